@@ -1,0 +1,34 @@
+"""The containers that travel down the line: frozen, validated, with their history."""
+
+from kinesphere.data.arrays import Array as Array
+from kinesphere.data.arrays import Codes as Codes
+from kinesphere.data.arrays import Mask as Mask
+from kinesphere.data.history import History as History
+from kinesphere.data.history import Json as Json
+from kinesphere.data.history import Step as Step
+from kinesphere.data.model import JointModel as JointModel
+from kinesphere.data.model import Landmark as Landmark
+from kinesphere.data.model import MarkerStatistics as MarkerStatistics
+from kinesphere.data.model import Segment as Segment
+from kinesphere.data.model import TopologicalModel as TopologicalModel
+from kinesphere.data.motion import Motion as Motion
+from kinesphere.data.motion import PoseFlag as PoseFlag
+from kinesphere.data.parameters import JointFlag as JointFlag
+from kinesphere.data.parameters import Parameters as Parameters
+from kinesphere.data.pose import motion_from_parameters as motion_from_parameters
+from kinesphere.data.recording import Analog as Analog
+from kinesphere.data.recording import Event as Event
+from kinesphere.data.recording import Output as Output
+from kinesphere.data.recording import OutputKind as OutputKind
+from kinesphere.data.recording import Recording as Recording
+from kinesphere.data.recording import UpAxis as UpAxis
+from kinesphere.data.settings import check_setting as check_setting
+from kinesphere.data.settings import check_settings as check_settings
+from kinesphere.data.settings import setting as setting
+from kinesphere.data.settings import settings_as_json as settings_as_json
+from kinesphere.data.skeleton import AxesSource as AxesSource
+from kinesphere.data.skeleton import Joint as Joint
+from kinesphere.data.skeleton import Limb as Limb
+from kinesphere.data.skeleton import Observability as Observability
+from kinesphere.data.skeleton import Skeleton as Skeleton
+from kinesphere.data.solution import Solution as Solution

@@ -1,0 +1,158 @@
+"""The topological model: which markers sit on which segment, and which segments meet at a joint.
+
+No pose, no sizes: it holds for every person who wears the layout (Huang & Xia 2010, section 3).
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from kinesphere.data.arrays import Array, frozen
+from kinesphere.errors import BadModel
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A limb as the layout knows it."""
+
+    name: str
+    """A limb name of the conventions (``left_thigh``), or ``limb_01``… where nobody knows."""
+    markers: tuple[str, ...]
+    """Labels of the markers that move rigidly with this segment and no other."""
+    shared: tuple[str, ...] = ()
+    """Labels near a joint that a neighbour owns: landmarks here, never part of the rigid fit."""
+
+
+@dataclass(frozen=True)
+class Landmark:
+    """Where a joint centre is expected, before the motion has its say.
+
+    The point is ``sum(weight * marker)`` (weights add up to 1) moved by ``inward`` times the
+    distance between the two ``scale`` labels, towards the middle of the body along its lateral
+    axis; then by ``down`` and ``forward`` times that distance along the other two body axes.
+    """
+
+    weights: Mapping[str, float]
+    """Label → weight."""
+    scale: tuple[str, str] | None = None
+    inward: float = 0.0
+    down: float = 0.0
+    forward: float = 0.0
+    spread: float = 0.03
+    """m, standard deviation of the true centre about this point."""
+    source: str = ""
+    """Paper or measurement the numbers come from."""
+
+
+@dataclass(frozen=True)
+class JointModel:
+    """Two segments that meet."""
+
+    name: str
+    parent: str
+    child: str
+    n_axes: int | None = None
+    """Movement axes besides twist (paper section 4): 1, 2 or 3; None to find out."""
+    landmarks: tuple[Landmark, ...] = ()
+    """Best first; the first whose labels are all in the recording counts."""
+
+
+@dataclass(frozen=True, eq=False)
+class MarkerStatistics:
+    """Distances between markers, learnt from recordings: what labelling compares with."""
+
+    labels: tuple[str, ...]
+    mean: Array
+    """(n_labels, n_labels) m; NaN where two markers were never seen together."""
+    deviation: Array
+    """(n_labels, n_labels) m, standard deviation over time."""
+    recording: str
+    """A name for the recording it was learnt from, never a path."""
+
+    def __post_init__(self) -> None:
+        n = len(self.labels)
+        object.__setattr__(self, "mean", frozen(self.mean, n, n, name="mean distances"))
+        object.__setattr__(self, "deviation", frozen(self.deviation, n, n, name="deviations"))
+
+
+@dataclass(frozen=True, eq=False)
+class TopologicalModel:
+    """Segments, their markers, the joints between them, and what mirrors what."""
+
+    name: str
+    segments: tuple[Segment, ...]
+    joints: tuple[JointModel, ...]
+    root: str
+    """Name of the segment every other hangs from."""
+    required: tuple[str, ...] = ()
+    """Labels that identify the layout; a recording that has 90 % of them is covered."""
+    mirror: tuple[tuple[str, str], ...] = ()
+    """Pairs (left label, right label)."""
+    aliases: Mapping[str, str] = field(default_factory=dict)
+    """Other spelling → label of this model (``RBAK`` → ``RBAC``)."""
+    statistics: tuple[MarkerStatistics, ...] = ()
+    description: str = ""
+
+    def __post_init__(self) -> None:
+        names = [segment.name for segment in self.segments]
+        if twice := sorted({n for n in names if names.count(n) > 1}):
+            raise BadModel(f"model {self.name}: segment {', '.join(twice)} is there twice")
+        if self.root not in names:
+            raise BadModel(
+                f"model {self.name}: root {self.root!r} is no segment; there are {', '.join(names)}"
+            )
+        owners: dict[str, str] = {}
+        for segment in self.segments:
+            for label in segment.markers:
+                if label in owners:
+                    raise BadModel(
+                        f"model {self.name}: marker {label} belongs to both {owners[label]} "
+                        f"and {segment.name}; list it as shared in one of them"
+                    )
+                owners[label] = segment.name
+        parents: dict[str, str] = {}
+        for joint in self.joints:
+            for end in (joint.parent, joint.child):
+                if end not in names:
+                    raise BadModel(
+                        f"model {self.name}: joint {joint.name} names segment {end!r}; "
+                        f"there are {', '.join(names)}"
+                    )
+            if joint.child in parents:
+                raise BadModel(f"model {self.name}: segment {joint.child} has two parents")
+            parents[joint.child] = joint.parent
+        for name in names:
+            seen = {name}
+            while (name in parents) and name != self.root:
+                name = parents[name]
+                if name in seen:
+                    raise BadModel(f"model {self.name}: joints form a ring through {name}")
+                seen.add(name)
+            if name != self.root:
+                raise BadModel(
+                    f"model {self.name}: no chain of joints leads from {name} to the root"
+                )
+        if self.root in parents:
+            raise BadModel(f"model {self.name}: root {self.root} hangs from {parents[self.root]}")
+
+    @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """Every label that a segment owns, in segment order."""
+        return tuple(label for segment in self.segments for label in segment.markers)
+
+    def segment(self, name: str) -> Segment:
+        """Return the segment of that name; KeyError if there is none."""
+        return {segment.name: segment for segment in self.segments}[name]
+
+    @cached_property
+    def joints_from_root(self) -> tuple[JointModel, ...]:
+        """Joints ordered so that a parent comes before its children."""
+        ordered: list[JointModel] = []
+        reached = {self.root}
+        left = list(self.joints)
+        while left:
+            ready = [joint for joint in left if joint.parent in reached]
+            ordered += ready
+            reached |= {joint.child for joint in ready}
+            left = [joint for joint in left if joint.child not in reached]
+        return tuple(ordered)

@@ -1,0 +1,1 @@
+"""Rotations, rigid fits, planes, spheres, chains: arrays in, arrays out."""

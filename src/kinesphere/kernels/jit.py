@@ -1,0 +1,13 @@
+"""How kernels are compiled: once, cached beside the package, NaN kept honest (no fastmath)."""
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numba
+
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+
+def kernel(function: _F) -> _F:
+    """Compile a function of arrays and numbers; ``NUMBA_DISABLE_JIT=1`` leaves it plain Python."""
+    return cast(_F, numba.njit(cache=True, error_model="numpy")(function))

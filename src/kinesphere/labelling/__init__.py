@@ -1,0 +1,1 @@
+"""Which marker is which: topological models, label spellings, subjects."""
