@@ -19,7 +19,7 @@ def frozen(values: ArrayLike, *shape: int | None, name: str) -> Array:
     Parameters
     ----------
     values : array_like
-        Copied, unless it is read-only already.
+        Copied, unless nobody can write to it any more.
     *shape
         Expected length of each axis; None where any length will do.
     name
@@ -63,7 +63,9 @@ def _check_shape(found: tuple[int, ...], wanted: Iterable[int | None], name: str
 
 
 def _read_only(array: _A) -> _A:
-    if array.flags.writeable or not array.flags.c_contiguous:
+    owner = array if array.base is None else array.base
+    safe = isinstance(owner, np.ndarray) and not owner.flags.writeable
+    if not (safe and array.flags.c_contiguous and not array.flags.writeable):
         array = array.copy(order="C")
         array.flags.writeable = False
     return array

@@ -122,13 +122,12 @@ class TopologicalModel:
                 raise BadModel(f"model {self.name}: segment {joint.child} has two parents")
             parents[joint.child] = joint.parent
         for name in names:
-            seen = {name}
-            while (name in parents) and name != self.root:
-                name = parents[name]
-                if name in seen:
-                    raise BadModel(f"model {self.name}: joints form a ring through {name}")
-                seen.add(name)
-            if name != self.root:
+            chain = [name]
+            while chain[-1] in parents and chain[-1] != self.root:
+                chain.append(parents[chain[-1]])
+                if chain[-1] in chain[:-1]:
+                    raise BadModel(f"model {self.name}: joints form a ring through {chain[-1]}")
+            if chain[-1] != self.root:
                 raise BadModel(
                     f"model {self.name}: no chain of joints leads from {name} to the root"
                 )
