@@ -11,6 +11,9 @@ from kinesphere.data.model import Landmark as Landmark
 from kinesphere.data.model import MarkerStatistics as MarkerStatistics
 from kinesphere.data.model import Segment as Segment
 from kinesphere.data.model import TopologicalModel as TopologicalModel
+from kinesphere.data.model_dict import model_from_dict as model_from_dict
+from kinesphere.data.model_dict import model_schema as model_schema
+from kinesphere.data.model_dict import model_to_dict as model_to_dict
 from kinesphere.data.motion import Motion as Motion
 from kinesphere.data.motion import PoseFlag as PoseFlag
 from kinesphere.data.parameters import JointFlag as JointFlag
