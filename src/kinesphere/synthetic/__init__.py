@@ -1,1 +1,10 @@
 """Actors whose truth is known, and ways to spoil what cameras see of them."""
+
+from kinesphere.synthetic.actor import Actor as Actor
+from kinesphere.synthetic.actor import make_actor as make_actor
+from kinesphere.synthetic.bodies import HUMAN as HUMAN
+from kinesphere.synthetic.performance import Performance as Performance
+from kinesphere.synthetic.performance import make_performance as make_performance
+from kinesphere.synthetic.plan import BodyPlan as BodyPlan
+from kinesphere.synthetic.plan import LimbPlan as LimbPlan
+from kinesphere.synthetic.plan import Movement as Movement

@@ -1,0 +1,262 @@
+"""A whole performance: an actor moves, cameras see its markers, and the truth is kept."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinesphere import __version__
+from kinesphere.data import (
+    Array,
+    Mask,
+    Motion,
+    Parameters,
+    Recording,
+    Skeleton,
+    Step,
+    TopologicalModel,
+    motion_from_parameters,
+)
+from kinesphere.errors import BadSetting
+from kinesphere.geometry.rotations import rotation_about, rotation_angle
+from kinesphere.synthetic.actor import Actor, make_actor
+from kinesphere.synthetic.axes import Range
+from kinesphere.synthetic.bodies import HUMAN
+from kinesphere.synthetic.layout import (
+    Layout,
+    marker_bodies,
+    model_from_skeleton,
+    skeleton_with_markers,
+)
+from kinesphere.synthetic.movement import Course, angle_courses, smooth_noise
+from kinesphere.synthetic.plan import BodyPlan
+
+_ROAM_M = 1.5  # how far the root wanders in free motion
+_SWAY_M = 0.004  # standard deviation of the root's sway while calibrating
+_FLOOR_M = 0.02  # over this height the support passes smoothly from one foot to the other
+_N_COMPARED = 80  # frames among which the range of motion is looked for
+
+
+@dataclass(frozen=True, eq=False)
+class Performance:
+    """What cameras saw, and everything they should lead back to."""
+
+    recording: Recording
+    """Complete and without noise; y up, metres."""
+    model: TopologicalModel
+    """Which marker sits on which limb."""
+    parameters: Parameters
+    """True angles, twists and root poses; its skeleton holds true sizes, centres, axes, rests."""
+    motion: Motion
+    """True poses of the normalized limb frames."""
+    joint_centres: Array
+    """(n_frames, n_joints, 3) m in the world."""
+    calibration: tuple[float, float]
+    """s, start and end of the calibration, standing at the start included."""
+    moving_about: Mask
+    """(n_frames, n_joints, 3) True while the limb moves about axis 1, 2, 3 on purpose."""
+    actor: Actor
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The true skeleton."""
+        return self.parameters.skeleton
+
+
+def make_performance(
+    rng: np.random.Generator,
+    *,
+    layout: Layout = "bodies",
+    plan: BodyPlan = HUMAN,
+    rate: float = 50.0,
+    calibration_s: float = 60.0,
+    free_s: float = 20.0,
+    n_frames: int | None = None,
+    repetitions: int = 3,
+    sway_deg: float = 0.2,
+    axes_deg: Range = (70.0, 110.0),
+    cone_deg: Range = (80.0, 100.0),
+) -> Performance:
+    """Let a random actor stand, calibrate and move freely.
+
+    It stands in the default position, makes the main movements of each limb one after another with
+    rests between, then walks and reaches about, twisting every limb.
+
+    Parameters
+    ----------
+    rng
+        Everything random comes from it.
+    layout
+        ``bodies``: three to five markers at random on each limb; ``cmu41``: the 41 markers of the
+        CMU recordings at their anatomical places.
+    plan
+        The kind of body.
+    rate
+        Hz.
+    calibration_s, free_s
+        s.
+    n_frames
+        Instead of ``free_s``: how many frames there are in all.
+    repetitions
+        How often each calibration movement is made.
+    sway_deg
+        deg, standard deviation of the sway of every angle while calibrating.
+    axes_deg, cone_deg
+        As `make_actor` takes them.
+
+    Raises
+    ------
+    BadSetting
+        If a duration is negative, or there are fewer frames than the calibration takes.
+    """
+    n_calibration = round(calibration_s * rate)
+    total = round((calibration_s + free_s) * rate) if n_frames is None else n_frames
+    if not rate > 0 or calibration_s < 0 or free_s < 0:
+        raise BadSetting(
+            f"rate {rate} Hz must be positive, calibration {calibration_s} s and free motion "
+            f"{free_s} s must not be negative"
+        )
+    if total < max(n_calibration, 1):
+        raise BadSetting(
+            f"n_frames is {total}; the calibration alone takes {n_calibration} frames, "
+            "and at least one frame is needed"
+        )
+    actor = make_actor(rng, plan=plan, axes_deg=axes_deg, cone_deg=cone_deg)
+    placed = marker_bodies(rng, actor)
+    skeleton = skeleton_with_markers(actor.skeleton, placed)
+    times = np.arange(total) / rate
+    course = angle_courses(
+        rng,
+        actor,
+        times,
+        calibration_s=calibration_s,
+        repetitions=repetitions,
+        sway_deg=sway_deg,
+    )
+    step = Step(
+        "synthetic",
+        settings={
+            "layout": layout,
+            "plan": plan.name,
+            "rate_hz": rate,
+            "calibration_s": calibration_s,
+            "free_s": total / rate - calibration_s,
+            "repetitions": repetitions,
+            "sway_deg": sway_deg,
+            "axes_deg": list(axes_deg),
+            "cone_deg": list(cone_deg),
+        },
+        findings={"size_m": actor.size, "n_frames": total},
+        version=__version__,
+    )
+    parameters = _parameters(rng, actor, skeleton, course, times, rate, step)
+    motion = motion_from_parameters(parameters)
+    motion = replace(motion, residuals=np.zeros_like(motion.residuals))
+    markers = motion.marker_positions()
+    return Performance(
+        recording=Recording(
+            markers=np.stack(list(markers.values()), axis=1),
+            labels=tuple(markers),
+            rate=rate,
+            up="+y",
+            history=(step,),
+        ),
+        model=model_from_skeleton(skeleton, f"{plan.name}-{layout}"),
+        parameters=parameters,
+        motion=motion,
+        joint_centres=motion.joint_centres(),
+        calibration=(0.0, calibration_s),
+        moving_about=course.moving,
+        actor=actor,
+    )
+
+
+def _parameters(
+    rng: np.random.Generator,
+    actor: Actor,
+    skeleton: Skeleton,
+    course: Course,
+    times: Array,
+    rate: float,
+    step: Step,
+) -> Parameters:
+    """Put the angles on the skeleton and the skeleton on the floor."""
+    n_frames, n_joints = len(times), len(skeleton.joints)
+    parameters = Parameters(
+        skeleton=skeleton,
+        root_positions=np.zeros((n_frames, 3)),
+        root_rotations=_root_rotations(rng, course, times),
+        angles=course.angles[..., :3],
+        twists=course.angles[..., 3],
+        residuals=np.zeros((n_frames, n_joints)),
+        flags=np.zeros((n_frames, n_joints), dtype=np.uint8),
+        moving=course.moving.any(axis=2),
+        rate=rate,
+        history=(step,),
+    )
+    hovering = motion_from_parameters(parameters)
+    joints = tuple(
+        replace(joint, range_of_motion=_range_of_motion(relative))
+        for joint, relative in zip(
+            skeleton.joints, np.moveaxis(_some(hovering).relative_rotations(), 1, 0), strict=True
+        )
+    )
+    return replace(
+        parameters,
+        skeleton=replace(skeleton, joints=joints),
+        root_positions=_root_positions(rng, actor, hovering, course, times),
+    )
+
+
+def _root_rotations(rng: np.random.Generator, course: Course, times: Array) -> Array:
+    """Draw a heading that wanders in free motion, and a tilt that is sway before and play after."""
+    heading = rng.uniform(-np.pi, np.pi) + 1.5 * course.free * smooth_noise(
+        rng, times, (), 0.02, 0.08
+    )
+    tilt = np.deg2rad(0.2 + 5 * course.free)[:, None] * smooth_noise(rng, times, (2,), 0.1, 0.4)
+    x, y, z = np.eye(3)
+    return np.asarray(
+        rotation_about(y, heading) @ rotation_about(x, tilt[:, 0]) @ rotation_about(z, tilt[:, 1])
+    )
+
+
+def _root_positions(
+    rng: np.random.Generator, actor: Actor, hovering: Motion, course: Course, times: Array
+) -> Array:
+    """Let the root roam over the floor, at the height that keeps the lowest foot on it."""
+    positions = np.empty((len(times), 3))
+    roam = _ROAM_M * course.free[:, None] * smooth_noise(rng, times, (2,), 0.01, 0.06)
+    sway = _SWAY_M * smooth_noise(rng, times, (2,), 0.1, 0.5)
+    positions[:, [0, 2]] = rng.uniform(-1, 1, 2) + roam + sway
+    feet = [hovering.skeleton.limb_names.index(name) for name in actor.plan.stands_on]
+    if not feet:
+        positions[:, 1] = 1.0 + 0.2 * course.free * smooth_noise(rng, times, (), 0.05, 0.2)
+        return positions
+    ends = np.array(
+        [limb.length / 2 * limb.long_axis for limb in (hovering.skeleton.limbs[i] for i in feet)]
+    )
+    heights = (
+        hovering.origins[:, feet, 1] + ((hovering.rotations[:, feet] @ ends[..., None])[..., 1, 0])
+    )
+    deep = heights.min(axis=1)
+    softly = np.exp(-(heights - deep[:, None]) / _FLOOR_M).sum(axis=1)
+    lowest = deep - _FLOOR_M * np.log(softly / len(feet))
+    positions[:, 1] = actor.plan.sole * actor.size - lowest
+    return positions
+
+
+def _some(motion: Motion) -> Motion:
+    """Return a motion of no more than `_N_COMPARED` frames spread over this one."""
+    at = np.unique(np.linspace(0, motion.n_frames - 1, _N_COMPARED).astype(int))
+    return replace(
+        motion,
+        rotations=motion.rotations[at],
+        origins=motion.origins[at],
+        residuals=motion.residuals[at],
+        flags=motion.flags[at],
+    )
+
+
+def _range_of_motion(relative: Array) -> float:
+    """Return the 95th percentile in rad of the angles between the orientations (n, 3, 3)."""
+    between = np.swapaxes(relative[:, None], -1, -2) @ relative
+    return float(np.percentile(rotation_angle(between), 95))
