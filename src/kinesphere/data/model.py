@@ -29,7 +29,8 @@ class Landmark:
 
     The point is ``sum(weight * marker)`` (weights add up to 1) moved by ``inward`` times the
     distance between the two ``scale`` labels, towards the middle of the body along its lateral
-    axis; then by ``down`` and ``forward`` times that distance along the other two body axes.
+    axis; then by ``down`` and ``forward`` times that distance along the other two body axes. The
+    axes are those of the body in the default position: standing, arms hanging, down is gravity.
     """
 
     weights: Mapping[str, float]
