@@ -1,22 +1,27 @@
 """Where markers sit on an actor."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Literal, TypeAlias
 
 import numpy as np
 
 from kinesphere.data import Array, JointModel, Limb, Segment, Skeleton, TopologicalModel
+from kinesphere.errors import BadSetting
 from kinesphere.synthetic.actor import Actor
+from kinesphere.synthetic.cmu41 import cmu41_markers, cmu41_twin
 from kinesphere.synthetic.plan import other_side, side_of
 
 Layout: TypeAlias = Literal["bodies", "cmu41"]
+Placed: TypeAlias = dict[str, tuple[list[str], Array]]
+"""Limb → labels and (n_markers, 3) m in the limb frame."""
 
 _SPREAD_M = (0.05, 0.10)  # rms distance of a body's markers from their centroid
 _LEAST_WIDTH = 0.35  # of the second principal extent against the first: far from a line
 _LEAST_GAP = 0.35  # of the closest pair against the spread: two markers stay two
 
 
-def marker_bodies(rng: np.random.Generator, actor: Actor) -> dict[str, tuple[list[str], Array]]:
+def marker_bodies(rng: np.random.Generator, actor: Actor) -> Placed:
     """Place a body of three to five markers at random on each limb.
 
     The centroid lies anywhere about the limb's middle; on a limb that carries no other it lies on
@@ -51,39 +56,50 @@ def _scattered(rng: np.random.Generator, n_markers: int) -> Array:
             return np.asarray(points * rng.uniform(*_SPREAD_M) / spread)
 
 
-def skeleton_with_markers(
-    skeleton: Skeleton, placed: dict[str, tuple[list[str], Array]]
-) -> Skeleton:
-    """Return the skeleton whose limbs own the markers placed on them."""
-
-    def dressed(limb: Limb) -> Limb:
-        labels, positions = placed[limb.name]
-        return replace(limb, markers=tuple(labels), marker_positions=positions)
-
-    return replace(skeleton, limbs=tuple(dressed(limb) for limb in skeleton.limbs))
+def _twin(label: str) -> str:
+    return other_side(label) if side_of(label) else label
 
 
-def model_from_skeleton(skeleton: Skeleton, name: str) -> TopologicalModel:
-    """Return the topological model that is true for a skeleton: every segment, marker, joint."""
-    labels = {label for limb in skeleton.limbs for label in limb.markers}
-    return TopologicalModel(
-        name=name,
-        segments=tuple(Segment(limb.name, limb.markers) for limb in skeleton.limbs),
+_LAYOUTS: Mapping[
+    Layout, tuple[Callable[[np.random.Generator, Actor], Placed], Callable[[str], str]]
+] = {"bodies": (marker_bodies, _twin), "cmu41": (cmu41_markers, cmu41_twin)}
+
+
+def place_markers(
+    rng: np.random.Generator, actor: Actor, layout: Layout
+) -> tuple[Skeleton, TopologicalModel]:
+    """Return the actor's skeleton with markers, and the topological model that is true for it.
+
+    Raises
+    ------
+    BadSetting
+        If there is no such layout, or the body lacks a limb that it needs.
+    """
+    if layout not in _LAYOUTS:
+        raise BadSetting(f"layout is {layout!r}; known are {', '.join(_LAYOUTS)}")
+    place, twin = _LAYOUTS[layout]
+    placed = place(rng, actor)
+    limbs = tuple(_dressed(limb, *placed[limb.name]) for limb in actor.skeleton.limbs)
+    skeleton = replace(actor.skeleton, limbs=limbs)
+    labels = tuple(label for limb in limbs for label in limb.markers)
+    model = TopologicalModel(
+        name=f"{actor.plan.name}-{layout}",
+        segments=tuple(Segment(limb.name, limb.markers) for limb in limbs),
         joints=tuple(
             JointModel(joint.name, joint.parent, joint.child, n_axes=joint.n_axes)
             for joint in skeleton.joints
         ),
-        root=skeleton.limb_names[0],
-        required=tuple(label for limb in skeleton.limbs for label in limb.markers),
+        root=limbs[0].name,
+        required=labels,
         mirror=tuple(
-            (label, twin)
-            for limb in skeleton.limbs
-            for label in limb.markers
-            if (twin := _twin(label)) in labels and label < twin
+            (label, twin(label))
+            for label in labels
+            if label < twin(label) and twin(label) in labels
         ),
         description="the truth of a synthetic actor",
     )
+    return skeleton, model
 
 
-def _twin(label: str) -> str:
-    return other_side(label) if side_of(label) else label
+def _dressed(limb: Limb, labels: list[str], positions: Array) -> Limb:
+    return replace(limb, markers=tuple(labels), marker_positions=positions)

@@ -58,8 +58,9 @@ def angle_courses(
         for joint in slot.joints:
             _calibrate(rng, actor, slot, joint, times, repetitions, angles, moving)
     free = smooth_step((times - calibration_s) / _BLEND_S)
-    sway = np.deg2rad(sway_deg) * smooth_noise(rng, times, low.shape, 0.1, 0.6)
-    angles += sway * (1 - free)[:, None, None]
+    early = free < 1
+    sway = np.deg2rad(sway_deg) * smooth_noise(rng, times[early], low.shape, 0.1, 0.6)
+    angles[early] += sway * (1 - free)[early, None, None]
     late = free > 0
     if late.any():
         freely = _free_courses(rng, actor, times[late])

@@ -21,12 +21,7 @@ from kinesphere.geometry.rotations import rotation_about, rotation_angle
 from kinesphere.synthetic.actor import Actor, make_actor
 from kinesphere.synthetic.axes import Range
 from kinesphere.synthetic.bodies import HUMAN
-from kinesphere.synthetic.layout import (
-    Layout,
-    marker_bodies,
-    model_from_skeleton,
-    skeleton_with_markers,
-)
+from kinesphere.synthetic.layout import Layout, place_markers
 from kinesphere.synthetic.movement import Course, angle_courses, smooth_noise
 from kinesphere.synthetic.plan import BodyPlan
 
@@ -121,8 +116,7 @@ def make_performance(
             "and at least one frame is needed"
         )
     actor = make_actor(rng, plan=plan, axes_deg=axes_deg, cone_deg=cone_deg)
-    placed = marker_bodies(rng, actor)
-    skeleton = skeleton_with_markers(actor.skeleton, placed)
+    skeleton, model = place_markers(rng, actor, layout)
     times = np.arange(total) / rate
     course = angle_courses(
         rng,
@@ -148,9 +142,7 @@ def make_performance(
         findings={"size_m": actor.size, "n_frames": total},
         version=__version__,
     )
-    parameters = _parameters(rng, actor, skeleton, course, times, rate, step)
-    motion = motion_from_parameters(parameters)
-    motion = replace(motion, residuals=np.zeros_like(motion.residuals))
+    parameters, motion = _on_the_floor(rng, actor, skeleton, course, times, rate, step)
     markers = motion.marker_positions()
     return Performance(
         recording=Recording(
@@ -160,7 +152,7 @@ def make_performance(
             up="+y",
             history=(step,),
         ),
-        model=model_from_skeleton(skeleton, f"{plan.name}-{layout}"),
+        model=model,
         parameters=parameters,
         motion=motion,
         joint_centres=motion.joint_centres(),
@@ -170,7 +162,7 @@ def make_performance(
     )
 
 
-def _parameters(
+def _on_the_floor(
     rng: np.random.Generator,
     actor: Actor,
     skeleton: Skeleton,
@@ -178,7 +170,7 @@ def _parameters(
     times: Array,
     rate: float,
     step: Step,
-) -> Parameters:
+) -> tuple[Parameters, Motion]:
     """Put the angles on the skeleton and the skeleton on the floor."""
     n_frames, n_joints = len(times), len(skeleton.joints)
     parameters = Parameters(
@@ -189,22 +181,26 @@ def _parameters(
         twists=course.angles[..., 3],
         residuals=np.zeros((n_frames, n_joints)),
         flags=np.zeros((n_frames, n_joints), dtype=np.uint8),
-        moving=course.moving.any(axis=2),
+        moving=np.asarray(course.moving.any(axis=2)),
         rate=rate,
         history=(step,),
     )
     hovering = motion_from_parameters(parameters)
+    compared = np.unique(np.linspace(0, n_frames - 1, _N_COMPARED).astype(int))
+    relative = hovering.relative_rotations()[compared]
     joints = tuple(
-        replace(joint, range_of_motion=_range_of_motion(relative))
-        for joint, relative in zip(
-            skeleton.joints, np.moveaxis(_some(hovering).relative_rotations(), 1, 0), strict=True
-        )
+        replace(joint, range_of_motion=_range_of_motion(relative[:, j]))
+        for j, joint in enumerate(skeleton.joints)
     )
-    return replace(
-        parameters,
-        skeleton=replace(skeleton, joints=joints),
-        root_positions=_root_positions(rng, actor, hovering, course, times),
+    skeleton = replace(skeleton, joints=joints)
+    root_positions = _root_positions(rng, actor, hovering, course, times)
+    motion = replace(
+        hovering,
+        skeleton=skeleton,
+        origins=hovering.origins + root_positions[:, None],
+        residuals=np.zeros_like(hovering.residuals),
     )
+    return replace(parameters, skeleton=skeleton, root_positions=root_positions), motion
 
 
 def _root_rotations(rng: np.random.Generator, course: Course, times: Array) -> Array:
@@ -242,18 +238,6 @@ def _root_positions(
     lowest = deep - _FLOOR_M * np.log(softly / len(feet))
     positions[:, 1] = actor.plan.sole * actor.size - lowest
     return positions
-
-
-def _some(motion: Motion) -> Motion:
-    """Return a motion of no more than `_N_COMPARED` frames spread over this one."""
-    at = np.unique(np.linspace(0, motion.n_frames - 1, _N_COMPARED).astype(int))
-    return replace(
-        motion,
-        rotations=motion.rotations[at],
-        origins=motion.origins[at],
-        residuals=motion.residuals[at],
-        flags=motion.flags[at],
-    )
 
 
 def _range_of_motion(relative: Array) -> float:
