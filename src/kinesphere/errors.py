@@ -13,6 +13,10 @@ class UnknownFormat(UnreadableFile):
     """No reader or writer knows this kind of file."""
 
 
+class UnwritableFile(KinesphereError):
+    """A place cannot be written to, or holds what must not be replaced."""
+
+
 class BadRecording(KinesphereError):
     """A recording cannot be used as asked: no frames, no rate, labels that clash."""
 

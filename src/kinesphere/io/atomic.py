@@ -1,0 +1,122 @@
+"""Files and folders appear whole or not at all."""
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from kinesphere.errors import UnwritableFile
+
+
+@contextmanager
+def replacing(path: str | Path) -> Iterator[Path]:
+    """Give a path to write to; when the block ends well, the file there takes ``path``'s place.
+
+    The file is made beside ``path``, flushed to the disk and moved over it in one step; when the
+    block fails it is removed and whatever was at ``path`` stays as it was.
+
+    Raises
+    ------
+    UnwritableFile
+        If the place cannot be written to.
+    """
+    path = Path(path)
+    if path.is_dir():
+        raise UnwritableFile(f"{path} is a folder; a file cannot take its place")
+    with _said_plainly(path):
+        # the suffix stays: writers that choose by it must not notice
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem[:40]}.", suffix=path.suffix, dir=path.parent)
+    temporary = Path(name)
+    try:
+        os.close(handle)
+        yield temporary
+        with _said_plainly(path):
+            _copy_permissions(path, temporary)
+            _flush(temporary)
+            os.replace(temporary, path)
+            _flush(path.parent)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def replacing_directory(path: str | Path, is_ours: Callable[[Path], bool]) -> Iterator[Path]:
+    """Give a new folder to fill; when the block ends well it takes the place of ``path``.
+
+    Parameters
+    ----------
+    path
+        Where the folder shall be: nothing, an empty folder, or one of ours.
+    is_ours
+        Tells a folder of ours, which may be replaced, from any other, which may not.
+
+    Raises
+    ------
+    UnwritableFile
+        If ``path`` is a file or somebody else's folder, or cannot be written to.
+    """
+    path = Path(os.path.abspath(path))  # "here/." must have a name to be swapped under
+    if path.exists() and not path.is_dir():
+        raise UnwritableFile(f"{path} is a file; a folder cannot take its place")
+    if path.is_dir() and any(path.iterdir()) and not is_ours(path):
+        raise UnwritableFile(
+            f"{path} holds other files, and no solution to replace; name a new or empty folder"
+        )
+    with _said_plainly(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        beside = Path(tempfile.mkdtemp(prefix=f".{path.name[:40]}.", dir=path.parent))
+    new, old = beside / "new", beside / "old"
+    try:
+        with _said_plainly(path):
+            new.mkdir()
+        yield new
+        with _said_plainly(path):
+            for file in new.rglob("*"):
+                _flush(file)
+            _swap(path, new, old)
+            _flush(path.parent)
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+def _swap(path: Path, new: Path, old: Path) -> None:
+    if not path.exists():
+        os.replace(new, path)
+        return
+    os.replace(path, old)
+    try:
+        os.replace(new, path)
+    except OSError:
+        os.replace(old, path)
+        raise
+
+
+def _copy_permissions(path: Path, temporary: Path) -> None:
+    # mkstemp lets the owner alone read; a file should be as open as the one it replaces
+    if path.exists():
+        shutil.copymode(path, temporary)
+    else:
+        mask = os.umask(0)
+        os.umask(mask)
+        temporary.chmod(0o666 & ~mask)
+
+
+def _flush(path: Path) -> None:
+    if path.is_dir() and os.name == "nt":  # Windows cannot open a folder
+        return
+    flags = os.O_RDONLY if path.is_dir() else os.O_RDWR
+    handle = os.open(path, flags)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+@contextmanager
+def _said_plainly(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise UnwritableFile(f"{path}: cannot be written ({error.strerror or error})") from None
