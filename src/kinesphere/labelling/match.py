@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-import kinesphere
+from kinesphere import __version__
 from kinesphere.data import Json, Recording, Step, TopologicalModel
 from kinesphere.errors import BadRecording
 from kinesphere.labelling.models import built_in_model, built_in_models
@@ -206,5 +206,5 @@ def _step(
             "other_people": list(others),
         },
         warnings=tuple(warnings),
-        version=kinesphere.__version__,
+        version=__version__,
     )

@@ -1,0 +1,110 @@
+"""Where head, feet, front and back are, by what markers are commonly called.
+
+A model names its segments; without one, or where it names none of them, the customary labels of
+gait and animation layouts (Plug-in-Gait, CMU, Vicon, Qualisys, CAST) serve as well: for telling up
+from down and left from right it does not matter exactly where a marker sits.
+"""
+
+import re
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from kinesphere.data import Array, Recording, TopologicalModel
+
+HEAD = ("FHD", "BHD", "HD", "HEAD", "ARIEL", "HDF", "HDB", "TEMP")
+SHOULDERS = ("SHO", "FSH", "BSH", "ACR", "AC", "C7", "CV7", "CLAV", "CLA")
+WAIST_FRONT = ("ASI", "ASIS", "IAS", "FWT")
+WAIST_BACK = ("PSI", "PSIS", "IPS", "BWT", "SACR", "VSAC")
+TOES = ("TOE", "MT5", "MT1", "FM1", "FM5", "TOE5", "FTF")
+HEELS = ("HEE", "HEEL", "HEL", "FCC", "CAL", "FTB")
+ANKLES = ("ANK", "FAL", "ANL")
+KNEES = ("KNE", "FLE")
+
+_SIDED = re.compile(r"(?:(?P<side>[LR])(?:EFT|IGHT)?[_. ]?)?(?P<core>.+)", re.DOTALL)
+
+
+class Body:
+    """One person's markers, found by their customary names or by the segments of a model."""
+
+    def __init__(self, recording: Recording, columns: Mapping[str, int]) -> None:
+        """Take the markers at ``columns`` (name without subject, any case → column)."""
+        self._markers = recording.markers
+        self._columns: dict[str, list[int]] = {}
+        for name, column in columns.items():
+            whole = name.upper()
+            match = _SIDED.fullmatch(whole)
+            assert match is not None  # every string is a core with no side
+            side, core = match["side"] or "", match["core"]
+            for spelling in {whole, core, side + core}:
+                self._columns.setdefault(spelling, []).append(column)
+
+    def middle(self, *names: str) -> Array | None:
+        """Return the middle of the markers of these names that are seen, (n_frames, 3) m.
+
+        A name without a side (``TOE``) means both. None if there is no such marker; NaN in frames
+        where none of them is seen.
+        """
+        columns = sorted({c for name in names for c in self._columns.get(name, ())})
+        return mean_seen(self._markers[:, columns]) if columns else None
+
+    def side(self, side: str, names: Iterable[str]) -> Array | None:
+        """Return the middle of one side's markers, ``L`` or ``R``, as ``middle`` does."""
+        return self.middle(*(side + name for name in names))
+
+
+def find_bodies(recording: Recording) -> tuple[Body, ...]:
+    """Return one body for every subject that the labels name, at least one."""
+    people: dict[str, dict[str, int]] = {}
+    for column, label in enumerate(recording.labels):
+        subject, _, name = label.rpartition(":")
+        people.setdefault(subject, {}).setdefault(name.strip(), column)
+    return tuple(Body(recording, columns) for columns in people.values())
+
+
+def find_long_axes(
+    recording: Recording, model: TopologicalModel | None, bodies: Iterable[Body]
+) -> Array:
+    """Return unit vectors from the feet to the head, (n, 3): one per person and frame seen.
+
+    Feet and head are the model's segments of that name where the recording has their markers, else
+    what the customary labels say; the shoulders stand in for a head without markers.
+    """
+    axes = [_segments_axis(recording, model)] if model is not None else []
+    if not any(axis is not None for axis in axes):
+        axes = [_named_axis(body) for body in bodies]
+    found = [unit(axis) for axis in axes if axis is not None]
+    together: Array = np.concatenate([*found, np.empty((0, 3))])
+    return together[np.isfinite(together).all(axis=1)]
+
+
+def _segments_axis(recording: Recording, model: TopologicalModel) -> Array | None:
+    owned = {s.name: [m for m in s.markers if m in recording.labels] for s in model.segments}
+    upper = owned.get("head") or owned.get("trunk")
+    lower = [m for foot in ("left_foot", "right_foot") for m in owned.get(foot, ())]
+    if not upper or not lower:
+        return None
+    ends = [
+        mean_seen(recording.markers[:, recording.columns(tuple(end))]) for end in (upper, lower)
+    ]
+    return ends[0] - ends[1]
+
+
+def _named_axis(body: Body) -> Array | None:
+    head, shoulders = body.middle(*HEAD), body.middle(*SHOULDERS)
+    upper = shoulders if head is None else head
+    lower = body.middle(*TOES, *HEELS, *ANKLES)
+    return None if upper is None or lower is None else upper - lower
+
+
+def mean_seen(points: Array) -> Array:
+    """Return the mean over markers of what is seen, (n_frames, n, 3) → (n_frames, 3)."""
+    seen = np.isfinite(points).all(axis=2, keepdims=True)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.where(seen, points, 0.0).sum(axis=1) / seen.sum(axis=1))
+
+
+def unit(vectors: Array) -> Array:
+    """Return vectors divided by their length, (..., 3); NaN where that is zero."""
+    with np.errstate(invalid="ignore"):
+        return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))

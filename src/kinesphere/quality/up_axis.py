@@ -1,0 +1,115 @@
+"""The judgement: up from the user, the body, the file, the scene, in this order, said aloud."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from kinesphere.data import UpAxis
+from kinesphere.quality.upright import DIRECTIONS, Evidence
+
+Source = Literal["user", "body", "file", "floor", "extent", "assumed"]
+
+STRONG = 0.8
+"""Share of frames upright along one direction that leaves no doubt: an acrobatic recording has
+0.86, all others at hand 0.95 and more."""
+CANDIDATE = 0.25
+"""Share from which on a direction is worth comparing by its floor: kneeling, then lying prone,
+gives 0.47 and 0.51."""
+STEADIER = 0.5
+"""A floor moves at most this much of what its rival does."""
+MOVING = 0.02
+"""Sway, in sizes of the scene, below which nothing moves and all ends look like floors."""
+ON_FLOOR = 0.06
+"""Distance of a floor from the file's zero, in sizes: 10 cm for a standing adult."""
+TALLER = 1.5
+"""Extent over the next smaller one from which on the scene stands."""
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Which way is up and who says so."""
+
+    up: UpAxis
+    source: Source
+    warnings: tuple[str, ...] = ()
+
+
+def judge_up(evidence: Evidence, field: UpAxis | None, wanted: UpAxis | None) -> Judgement:
+    """Decide which direction of the file is up.
+
+    Parameters
+    ----------
+    field
+        What the file says.
+    wanted
+        What the user says; it wins.
+    """
+    seen, strong = _body(evidence)
+    if wanted is not None:
+        doubt = seen is not None and strong and seen != wanted
+        said = f"up is {wanted} as asked, although the head is along {seen} from the feet"
+        return Judgement(wanted, "user", (said,) if doubt else ())
+    if field is None:
+        return Judgement(seen, "body") if seen is not None else _from_scene(evidence)
+    if seen is None or seen == field:
+        return Judgement(field, "file")
+    share = evidence.upright[DIRECTIONS.index(seen)]
+    found = f"in {share:.0%} of the frames the head is along {seen} from the feet"
+    if strong and (seen[1] == field[1] or _stands(evidence, seen, field)):
+        said = f"the file says up is {field}, but {found}: up is {seen}"
+        return Judgement(seen, "body", (said,))
+    said = (
+        f"up is {field} as the file says, although {found}: a person who lies or turns over, or "
+        "else a wrong axis field; set orientation.up if so"
+    )
+    return Judgement(field, "file", (said,))
+
+
+def _body(evidence: Evidence) -> tuple[UpAxis | None, bool]:
+    """Return what the body says, if anything, and whether that leaves no doubt."""
+    share = np.nan_to_num(evidence.upright)
+    best = int(share.argmax())
+    if share[best] >= STRONG:
+        return DIRECTIONS[best], True
+    rivals = np.flatnonzero(share >= CANDIDATE)
+    if len(rivals) == 0:
+        return None, False
+    steady = rivals[np.argsort(evidence.sway[rivals], kind="stable")]
+    first = int(steady[0])
+    if len(steady) == 1 or evidence.sway[first] <= STEADIER * evidence.sway[steady[1]]:
+        return DIRECTIONS[first], False
+    return None, False
+
+
+def _stands(evidence: Evidence, seen: UpAxis, field: UpAxis) -> bool:
+    """Tell a standing person in a file with a wrong field from one who lies across a right one.
+
+    Who stands has a floor under the feet: it stays, or it is the file's zero, while the end of the
+    body along the field's axis does neither.
+    """
+    under, across = DIRECTIONS.index(seen), DIRECTIONS.index(field)
+    sway, floor = evidence.sway, np.abs(evidence.floor)
+    is_zero = bool(floor[under] <= ON_FLOOR < floor[across])
+    return is_zero or _stays(float(sway[under]), float(sway[across]))
+
+
+def _stays(floor: float, rival: float) -> bool:
+    return rival > MOVING and floor <= STEADIER * rival
+
+
+def _from_scene(evidence: Evidence) -> Judgement:
+    """Without a body and without a field: a steady floor, a tall scene, or the custom."""
+    said = "nothing in the file names the up axis and no body shows it; taken from {}: {}"
+    if np.isfinite(evidence.sway).all():
+        sway = evidence.sway.reshape(3, 2)  # axes, ends
+        steady, next_steady = np.argsort(sway.min(axis=1), kind="stable")[:2]
+        if _stays(float(sway[steady].min()), float(sway[next_steady].min())):
+            up = DIRECTIONS[int(2 * steady + sway[steady].argmin())]
+            return Judgement(up, "floor", (said.format("the end that stays in place", up),))
+        tall, next_tall = np.argsort(-evidence.extent, kind="stable")[:2]
+        if evidence.extent[tall] >= TALLER * evidence.extent[next_tall]:
+            ends = np.abs(evidence.floor[2 * tall : 2 * tall + 2])
+            up = DIRECTIONS[int(2 * tall + (ends[1] < ends[0]))]  # the floor is nearer to zero
+            return Judgement(up, "extent", (said.format("the longest extent", up),))
+    return Judgement("+z", "assumed", (said.format("custom", "+z"),))
