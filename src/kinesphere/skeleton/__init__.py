@@ -1,1 +1,4 @@
-"""From labelled markers to limbs, joint centres and one pose per limb and frame."""
+"""Limbs, joint centres and poses, measured from the motion of labelled markers."""
+
+from kinesphere.skeleton.fit import fit_skeleton as fit_skeleton
+from kinesphere.skeleton.settings import SkeletonSettings as SkeletonSettings

@@ -1,0 +1,196 @@
+"""Rigid fits: one shape to many frames, and the shape itself from frames with gaps."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.kernels.rigid import FITTED, fit_rigid_kernel
+
+Array = NDArray[np.float64]
+
+MIN_SPREAD = 0.005
+"""m, least rms extent of a marker body beside its longest line: below it is a line, not a body."""
+
+
+class RigidFit(NamedTuple):
+    """Pose of a shape in every frame."""
+
+    rotations: Array
+    """(n_frames, 3, 3) ``world_from_shape``; NaN where there is no fit."""
+    shifts: Array
+    """(n_frames, 3) m; NaN where there is no fit."""
+    status: NDArray[np.uint8]
+    """(n_frames,) FITTED, TOO_FEW or COLLINEAR of `kinesphere.kernels.rigid`."""
+
+    @property
+    def fitted(self) -> NDArray[np.bool_]:
+        """(n_frames,) True where there is a fit."""
+        return np.asarray(self.status == FITTED)
+
+
+def fit_rigid(
+    shape: Array, points: Array, weights: Array | None = None, *, min_spread: float = MIN_SPREAD
+) -> RigidFit:
+    """Fit ``points ≈ rotation @ shape + shift`` in every frame by weighted least squares [1]_.
+
+    Parameters
+    ----------
+    shape : (n_points, 3) m
+        A point that is NaN takes no part.
+    points : (n_frames, n_points, 3) m
+        NaN where a point is not seen.
+    weights : (n_points,) or (n_frames, n_points), optional
+        Zero leaves a point out.
+    min_spread
+        m; a frame whose seen points lie on a line, to this rms extent, has no fit.
+
+    References
+    ----------
+    .. [1] Horn (1987), J. Opt. Soc. Am. A 4(4), 629-642, doi:10.1364/JOSAA.4.000629.
+    """
+    seen = np.isfinite(points).all(axis=2) & np.isfinite(shape).all(axis=1)
+    w = np.where(seen, 1.0 if weights is None else weights, 0.0)
+    n_frames = len(points)
+    rotations = np.full((n_frames, 3, 3), np.nan)
+    shifts = np.full((n_frames, 3), np.nan)
+    status = np.zeros(n_frames, dtype=np.uint8)
+    fit_rigid_kernel(
+        np.ascontiguousarray(shape, dtype=np.float64),
+        np.ascontiguousarray(points, dtype=np.float64),
+        w,
+        min_spread,
+        rotations,
+        shifts,
+        status,
+    )
+    return RigidFit(rotations, shifts, status)
+
+
+def into_frame(rotations: Array, shifts: Array, points: Array) -> Array:
+    """Return world points seen from a moving frame, (n, 3, 3), (n, 3), (n, m, 3) → (n, m, 3)."""
+    seen: Array = (points - shifts[:, None]) @ rotations
+    return seen
+
+
+def out_of_frame(rotations: Array, shifts: Array, points: Array) -> Array:
+    """Return fixed points of a moving frame in the world, (n, 3, 3), (n, 3), (m, 3) → (n, m, 3)."""
+    moved: Array = points @ np.swapaxes(rotations, 1, 2) + shifts[:, None]
+    return moved
+
+
+def fit_shape(
+    points: Array,
+    weights: Array | None = None,
+    *,
+    outlier: float = 0.003,
+    rounds: int = 12,
+    min_spread: float = MIN_SPREAD,
+) -> Array | None:
+    """Return the shape of a marker body: generalised Procrustes analysis with gaps [1]_.
+
+    Starts at the frame whose distances are the most usual ones, then aligns and averages in turn.
+    A sighting far from where the shape puts it (a swap, a ghost) loses its weight: Geman and
+    McClure's ``1 / (1 + r²/s²)²`` with ``s`` the larger of ``outlier`` and three times the median
+    residual of its marker.
+
+    Parameters
+    ----------
+    points : (n_frames, n_points, 3) m
+        NaN where a point is not seen.
+    weights : (n_points,), optional
+        How much each point counts for the pose.
+    outlier
+        m, residual at which a sighting starts to be doubted.
+    rounds
+        Most alternations of aligning and averaging.
+    min_spread
+        m; as `fit_rigid` takes it.
+
+    Returns
+    -------
+    (n_points, 3) m or None
+        About the centroid, along the principal axes of the points; NaN for a point never seen
+        together with the rest. None where no frame shows three points off a line.
+
+    References
+    ----------
+    .. [1] Gower (1975), Psychometrika 40(1), 33-51, doi:10.1007/BF02291478.
+    """
+    seen = np.isfinite(points).all(axis=2)
+    start = _usual_frame(points, seen, min_spread)
+    if start is None:
+        return None
+    w0 = np.ones(points.shape[1]) if weights is None else weights
+    shape = np.where(seen[start][:, None], points[start], np.nan)
+    shape = shape - np.nanmean(shape, axis=0)
+    doubt = np.ones(seen.shape)
+    for _ in range(rounds):
+        fit = fit_rigid(shape, points, w0 * doubt, min_spread=min_spread)
+        aligned = into_frame(fit.rotations, fit.shifts, points)
+        known = np.isfinite(aligned).all(axis=2)
+        share = np.where(known, doubt, 0.0)
+        total = share.sum(axis=0)
+        with np.errstate(invalid="ignore"):
+            mean = (share[..., None] * np.where(known[..., None], aligned, 0.0)).sum(0) / total[
+                :, None
+            ]
+        mean -= _centre(mean, w0)
+        change = np.nanmax(np.abs(mean - shape)) if np.isfinite(mean - shape).any() else np.inf
+        new = bool((np.isfinite(mean) & ~np.isfinite(shape)).any())
+        shape = mean
+        residual = np.linalg.norm(aligned - mean, axis=2)
+        usual = np.array(
+            [np.median(r[k]) if k.any() else 0.0 for r, k in zip(residual.T, known.T, strict=True)]
+        )
+        s = np.maximum(outlier, 3 * usual)
+        doubt = np.where(known, 1 / (1 + np.where(known, residual / s, 0.0) ** 2) ** 2, 1.0)
+        if change < 1e-10 and not new:
+            break
+    return _principal(shape)
+
+
+def _centre(shape: Array, weights: Array) -> Array:
+    known = np.isfinite(shape).all(axis=1)
+    centre: Array = np.average(shape[known], axis=0, weights=weights[known])
+    return centre
+
+
+def _usual_frame(points: Array, seen: NDArray[np.bool_], min_spread: float) -> int | None:
+    """Return the frame with most points seen whose distances are nearest their medians."""
+    n = points.shape[1]
+    i, j = np.triu_indices(n, 1)
+    distances = np.linalg.norm(points[:, i] - points[:, j], axis=2)
+    known = np.isfinite(distances)
+    medians = np.array(
+        [np.median(d[k]) if k.any() else np.nan for d, k in zip(distances.T, known.T, strict=True)]
+    )
+    off = np.where(known, np.abs(distances - medians), 0.0).sum(axis=1) / np.maximum(
+        known.sum(axis=1), 1
+    )
+    order = np.lexsort((off, -seen.sum(axis=1)))
+    for frame in order[:200]:
+        shape = points[frame][seen[frame]]
+        if len(shape) >= 3 and line_spread(shape) > min_spread:
+            return int(frame)
+    return None
+
+
+def line_spread(points: Array) -> float:
+    """Return the rms extent in m of points beside the line that fits them best, (n, 3) → m."""
+    s = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return float(np.sqrt((s[1:] ** 2).sum() / len(points)))
+
+
+def _principal(shape: Array) -> Array:
+    """Turn a shape about its centroid onto its principal axes, signs by third moments."""
+    known = np.isfinite(shape).all(axis=1)
+    p = shape[known] - shape[known].mean(axis=0)
+    _, _, vt = np.linalg.svd(p)
+    skew = ((p @ vt.T) ** 3).sum(axis=0)
+    vt = np.where(skew < 0, -1.0, 1.0)[:, None] * vt
+    if np.linalg.det(vt) < 0:
+        vt[2] *= -1
+    turned = np.full_like(shape, np.nan)
+    turned[known] = p @ vt.T
+    return turned

@@ -1,0 +1,97 @@
+"""A limb while it is being measured: its points in its own frame, and its pose in some frames."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from kinesphere.data import Array, Mask
+from kinesphere.geometry.rigid import RigidFit, fit_rigid, fit_shape, into_frame
+
+NOISE = 0.001
+"""m, least noise a point's weight reckons with: no three points take the whole fit."""
+
+
+@dataclass
+class Body:
+    """A limb's markers, joint centre and axes in its own provisional frame."""
+
+    name: str
+    parent: str | None
+    labels: tuple[str, ...]
+    shape: Array
+    """(n_markers, 3) m."""
+    noise: Array
+    """(n_markers,) m, rms distance of each marker from where the poses put it."""
+    centre: Array | None = None
+    """(3,) m, the joint towards the parent."""
+    centre_noise: float = 0.0
+    """m, rms disagreement of parent and child about that joint."""
+    rotations: Array = field(default_factory=lambda: np.empty((0, 3, 3)))
+    """(n_sample, 3, 3) ``world_from_limb`` in the sampled frames; NaN where unknown."""
+    shifts: Array = field(default_factory=lambda: np.empty((0, 3)))
+    """(n_sample, 3) m."""
+    rest: Array = field(default_factory=lambda: np.eye(3))
+    """(3, 3) usual ``parent_from_child``."""
+    right: Array | None = None
+    """(3,) unit vector towards the body's right, seen from the limb."""
+    up: Array | None = None
+    """(3,) unit vector, the body's up or the limb's proximal direction, seen from the limb."""
+    twist_open: bool = False
+    """True where markers and joint lie on one line, so that nothing of the limb's own tells its twist."""
+    borrow: Array | None = None
+    """(3,) unit vector in the limb, the normal of the plane it makes with the next limb; only where
+    the twist is open and the joint between them bends."""
+
+    @property
+    def points(self) -> Array:
+        """(n, 3) m, markers and, if there is one, the joint centre as the last."""
+        return self.shape if self.centre is None else np.vstack([self.shape, self.centre])
+
+    @property
+    def weights(self) -> Array:
+        """(n,) 1/m², how much each of `points` counts for the pose."""
+        noise = self.noise if self.centre is None else np.append(self.noise, self.centre_noise)
+        weights: Array = 1 / (noise**2 + NOISE**2)
+        return weights
+
+
+def measure_shape(
+    points: Array, outlier: float, min_spread: float, noise: Array | None = None
+) -> tuple[Array, Array, RigidFit] | None:
+    """Return a limb's shape, the noise of each point, and its pose, from points in the world.
+
+    Points that wander (an acromion on the trunk) lose weight by their own residual.
+
+    Parameters
+    ----------
+    points : (n_frames, n_points, 3) m
+    outlier, min_spread
+        m, as `kinesphere.geometry.rigid.fit_shape` takes them.
+    noise : (n_points,) m, optional
+        First guess of each point's noise.
+    """
+    noise = np.zeros(points.shape[1]) if noise is None else noise
+    for _ in range(4):
+        weights = 1 / (noise**2 + NOISE**2)
+        shape = fit_shape(points, weights, outlier=outlier, min_spread=min_spread)
+        if shape is None or not np.isfinite(shape).all():
+            return None
+        fit = fit_rigid(shape, points, weights, min_spread=min_spread)
+        residual = np.linalg.norm(into_frame(fit.rotations, fit.shifts, points) - shape, axis=2)
+        noise = robust_rms(residual)
+    return shape, noise, fit
+
+
+def robust_rms(residuals: Array) -> Array:
+    """Return the rms of lengths over frames, the longest 5 % left out, (n, m) m → (m,) m."""
+    rms = np.zeros(residuals.shape[1])
+    for i, column in enumerate(residuals.T):
+        known = np.sort(column[np.isfinite(column)])
+        if len(known):
+            rms[i] = np.sqrt(np.mean(known[: max(1, int(0.95 * len(known) + 0.5))] ** 2))
+    return rms
+
+
+def seen(points: Array) -> Mask:
+    """Return where points are seen, (..., 3) → (...)."""
+    return np.asarray(np.isfinite(points).all(axis=-1))

@@ -1,0 +1,93 @@
+"""Which way is right, up and forward, seen from a limb: what landmarks are measured along."""
+
+import numpy as np
+
+from kinesphere.data import Array, TopologicalModel
+from kinesphere.skeleton.body import Body
+
+HINGE_SIGN = {"elbow": 1.0, "knee": -1.0}
+"""cross(upper limb, lower limb), both pointing away from the body, times this points to the right:
+elbows flex to the front, knees to the back."""
+FLEXED_SHARE = 0.05
+"""Least share of frames in which a hinge must be flexed for its axis to be believed."""
+UPRIGHT = np.cos(np.deg2rad(30.0))
+
+
+def unit(vector: Array) -> Array:
+    """Return vectors of length 1; NaN for the zero vector."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        scaled: Array = vector / np.linalg.norm(vector, axis=-1, keepdims=True)
+    return scaled
+
+
+def beside(vector: Array, axis: Array) -> Array:
+    """Return the unit direction of what of a vector is perpendicular to a unit axis."""
+    return unit(vector - (vector @ axis) * axis)
+
+
+def right_from_pairs(body: Body, model: TopologicalModel) -> Array | None:
+    """Return the body's right from a limb's own mirror pairs, (3,); None if it has none."""
+    at = {label: i for i, label in enumerate(body.labels)}
+    across = [
+        body.shape[at[right]] - body.shape[at[left]]
+        for left, right in model.mirror
+        if left in at and right in at
+    ]
+    return unit(np.sum(across, axis=0)) if across else None
+
+
+def right_from_parent(body: Body, parent: Body) -> Array | None:
+    """Return the parent's right as the limb sees it on average, (3,); None if it never agrees."""
+    if parent.right is None:
+        return None
+    seen = np.swapaxes(body.rotations, 1, 2) @ (parent.rotations @ parent.right)[..., None]
+    mean = np.nanmean(seen[..., 0], axis=0)
+    return unit(mean) if np.linalg.norm(mean) > 0.3 else None
+
+
+def flexion_normals(upper: Array, lower: Array, flexed: float) -> Array:
+    """Return ``cross(upper, lower)`` where two limbs make an angle, (n, 3), (n, 3) m → (n, 3).
+
+    Parameters
+    ----------
+    upper, lower : (n_frames, 3)
+        Along the proximal and the distal limb, away from the body.
+    flexed
+        rad, least angle between them; NaN in all other frames.
+    """
+    normal = np.cross(unit(upper), unit(lower))
+    enough = np.linalg.norm(normal, axis=1) > np.sin(flexed)
+    return np.where(enough[:, None], normal, np.nan)
+
+
+def right_from_hinge(body: Body, upper: Array, lower: Array, flexed: float) -> Array | None:
+    """Return the normal of two limbs' plane as the proximal one sees it, (3,); None if too rare."""
+    normals = flexion_normals(upper, lower, flexed)
+    local = (np.swapaxes(body.rotations, 1, 2) @ normals[..., None])[..., 0]
+    known = np.isfinite(local).all(axis=1)
+    if known.sum() < max(5, FLEXED_SHARE * len(local)):
+        return None
+    mean = local[known].mean(axis=0)
+    length = np.linalg.norm(mean) / np.linalg.norm(local[known], axis=1).mean()
+    return unit(mean) if length > 0.7 else None
+
+
+def up_of_trunk(body: Body, towards_head: Array) -> Array:
+    """Return the body's up as the pelvis or trunk sees it, (3,).
+
+    The world's up, averaged over the frames in which the body is upright; the way to the head where
+    it never is.
+
+    Parameters
+    ----------
+    towards_head : (n_sample, 3)
+        In the world, along the trunk.
+    """
+    along = unit(towards_head)
+    upright = along[:, 1] > UPRIGHT
+    if upright.mean() > 0.02:
+        local = body.rotations[upright][:, 1]  # world y seen from the limb
+    else:
+        local = (np.swapaxes(body.rotations, 1, 2) @ along[..., None])[..., 0]
+    mean = np.nanmean(local, axis=0) if np.isfinite(local).any() else np.array([0.0, 1.0, 0.0])
+    return unit(mean)

@@ -1,0 +1,94 @@
+"""A labelled recording in, a measured skeleton and its motion out."""
+
+import numpy as np
+
+import kinesphere
+from kinesphere.data import (
+    Array,
+    Json,
+    Motion,
+    PoseFlag,
+    Recording,
+    Skeleton,
+    Step,
+    TopologicalModel,
+    settings_as_json,
+)
+from kinesphere.errors import BadRecording
+from kinesphere.skeleton.chain import cloud, measure_chain
+from kinesphere.skeleton.report import describe_joint, describe_limb
+from kinesphere.skeleton.sampling import spread_frames
+from kinesphere.skeleton.settings import SkeletonSettings
+from kinesphere.skeleton.solve import residuals, solve_poses
+from kinesphere.skeleton.tree import Tree, find_tree
+
+DEFAULT = SkeletonSettings()
+
+
+def fit_skeleton(
+    recording: Recording, model: TopologicalModel, settings: SkeletonSettings = DEFAULT
+) -> Motion:
+    """Measure limbs and joint centres from labelled markers, and the pose of every limb.
+
+    From the root outward every limb gets a reference shape of its markers and the joint it shares
+    with its parent; where the motion does not tell the joint's centre, the model's landmarks do, and
+    the joint's note says so. A limb that owns too few markers for a pose of its own takes the joint
+    centre as one more point; where even its twist stays open, the next limb lends it while the joint
+    between is flexed, else it is the least from rest and flagged.
+
+    Parameters
+    ----------
+    recording
+        With the labels of ``model``, in the world: y up, metres.
+    model
+        Which markers sit on which limb.
+
+    Returns
+    -------
+    Motion
+        Limb frames are provisional: principal axes of each limb's own markers.
+
+    Raises
+    ------
+    BadRecording
+        If there are no frames, or the root has fewer than three markers.
+    DegenerateMotion
+        If the root's markers never show an orientation.
+    """
+    if recording.n_frames == 0:
+        raise BadRecording("the recording has no frames; one at least is needed to fit a skeleton")
+    tree = find_tree(recording, model)
+    used = [label for limb in tree.limbs for label in tree.markers[limb]]
+    frames = spread_frames(
+        recording.markers[:, recording.columns(tuple(used))], settings.sample_frames
+    )
+    markers = {label: recording.markers[:, i] for i, label in enumerate(recording.labels)}
+    sample = {label: m[frames] for label, m in markers.items()}
+    bodies, joints = measure_chain(tree, model, sample, settings)
+    poses = solve_poses(tree, bodies, joints, markers, recording.rate, settings)
+    described = {
+        child: describe_joint(j, poses[j.model.parent], poses[child], bodies[child], settings)
+        for child, j in joints.items()
+    }
+    step = Step(
+        name="skeleton",
+        settings=settings_as_json(settings),
+        findings={"model": model.name, "frames_measured_on": len(frames)},
+        warnings=tree.warnings,
+        version=kinesphere.__version__,
+    )
+    limbs = tuple(describe_limb(tree, bodies[limb], joints) for limb in tree.limbs)
+    history = (*recording.history, step)
+    return Motion(
+        skeleton=Skeleton(limbs, tuple(described[limb] for limb in tree.limbs[1:]), history),
+        rotations=np.stack([poses[limb].rotations for limb in tree.limbs], axis=1),
+        origins=np.stack([poses[limb].shifts for limb in tree.limbs], axis=1),
+        residuals=np.stack(
+            [residuals(bodies[n], cloud(tree.markers[n], markers), poses[n]) for n in tree.limbs],
+            axis=1,
+        ),
+        flags=np.stack([poses[limb].flags for limb in tree.limbs], axis=1),
+        rate=recording.rate,
+        first_frame=recording.first_frame,
+        history=history,
+    )

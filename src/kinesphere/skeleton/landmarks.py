@@ -1,0 +1,80 @@
+"""Where a joint centre is expected before the motion has its say."""
+
+import numpy as np
+
+from kinesphere.data import Array, JointModel, Landmark
+from kinesphere.geometry.rigid import into_frame
+from kinesphere.skeleton.body import Body
+from kinesphere.skeleton.body_axes import beside
+
+NO_LANDMARK_SHARE = 0.5
+"""Without a landmark the centre is expected between the two limbs, to this share of their distance."""
+
+
+def expected_centre(
+    joint: JointModel, parent: Body, sample: dict[str, Array], child_labels: tuple[str, ...]
+) -> tuple[Array, float, str]:
+    """Return the expected joint centre in the parent's frame.
+
+    Parameters
+    ----------
+    sample
+        Label → (n_sample, 3) m, every marker of the recording in the sampled frames.
+    child_labels
+        The child's own markers.
+
+    Returns
+    -------
+    centre : (3,) m
+    spread : m
+    source : where it comes from, for a person
+    """
+    for landmark in joint.landmarks:
+        if found := _landmark(landmark, joint, parent, sample):
+            return *found, landmark.source or "landmark"
+    cloud = np.stack([sample[label] for label in child_labels], axis=1)
+    child = np.nanmedian(
+        np.nanmean(into_frame(parent.rotations, parent.shifts, cloud), axis=1), axis=0
+    )
+    own = parent.shape.mean(axis=0)
+    spread = max(NO_LANDMARK_SHARE * float(np.linalg.norm(child - own)), 0.02)
+    return (child + own) / 2, spread, "between the markers of both limbs"
+
+
+def _landmark(
+    landmark: Landmark, joint: JointModel, parent: Body, sample: dict[str, Array]
+) -> tuple[Array, float] | None:
+    needed = {*landmark.weights, *(landmark.scale or ())}
+    if not needed <= sample.keys():
+        return None
+    world = np.sum([w * sample[label] for label, w in landmark.weights.items()], axis=0)
+    local = into_frame(parent.rotations, parent.shifts, world[:, None])[:, 0]
+    if not np.isfinite(local).all(axis=1).any():
+        return None
+    centre = np.nanmedian(local, axis=0)
+    if landmark.scale is None or not (landmark.inward or landmark.down or landmark.forward):
+        return centre, landmark.spread
+    a, b = landmark.scale
+    apart = np.linalg.norm(sample[a] - sample[b], axis=1)
+    if not np.isfinite(apart).any() or parent.up is None:
+        return None
+    size = float(np.nanmedian(apart))
+    up = parent.up
+    spread = landmark.spread
+    if parent.right is None:
+        # nobody knows which way is in: stay, and say how far off that may be
+        spread = float(np.hypot(spread, size * max(abs(landmark.inward), abs(landmark.forward))))
+        return centre - landmark.down * size * up, spread
+    right = beside(parent.right, up)
+    forward = np.cross(up, right)
+    inward = inward_sign(joint, centre, parent, right) * right
+    moved = landmark.inward * inward - landmark.down * up + landmark.forward * forward
+    return centre + size * moved, spread
+
+
+def inward_sign(joint: JointModel, point: Array, parent: Body, right: Array) -> float:
+    """Return +1 where the middle of the body lies to the right of a point, −1 to its left."""
+    for name in (joint.child, joint.name):
+        if name.startswith(("left_", "right_")):
+            return 1.0 if name.startswith("left_") else -1.0
+    return -1.0 if (point - parent.shape.mean(axis=0)) @ right > 0 else 1.0

@@ -1,0 +1,205 @@
+"""The pose of a limb in every frame, from whatever of it is seen."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial.transform import Rotation, Slerp
+
+from kinesphere.data import Array, Codes, Mask, PoseFlag
+from kinesphere.geometry.rigid import fit_rigid, out_of_frame
+from kinesphere.geometry.rotations import rotation_between
+from kinesphere.skeleton.body import NOISE, Body, seen
+from kinesphere.skeleton.body_axes import unit
+
+RELEASE = 0.75
+"""A borrowed twist is given back when the flexion falls below this share of where it was taken."""
+
+
+class Poses(NamedTuple):
+    """A limb's poses; NaN and UNSEEN where nothing is known."""
+
+    rotations: Array
+    """(n_frames, 3, 3) ``world_from_limb``."""
+    shifts: Array
+    """(n_frames, 3) m."""
+    flags: Codes
+    """(n_frames,) PoseFlag."""
+
+    def carry(self, point: Array) -> Array:
+        """Return a point of the limb in the world, (3,) m → (n_frames, 3) m."""
+        return out_of_frame(self.rotations, self.shifts, point[None])[:, 0]
+
+
+class Neighbour(NamedTuple):
+    """A point of the limb that another limb knows: a joint centre."""
+
+    here: Array
+    """(3,) m in the limb."""
+    world: Array
+    """(n_frames, 3) m; NaN where the other limb is unseen."""
+    noise: float
+    """m."""
+
+
+def no_poses(n_frames: int) -> Poses:
+    """Return poses of a limb never seen."""
+    return Poses(
+        np.full((n_frames, 3, 3), np.nan),
+        np.full((n_frames, 3), np.nan),
+        np.full(n_frames, PoseFlag.UNSEEN, dtype=np.uint8),
+    )
+
+
+def fit_poses(
+    body: Body,
+    own: Array,
+    joints: tuple[Neighbour, ...],
+    helpers: tuple[Neighbour, ...],
+    min_spread: float,
+) -> Poses:
+    """Fit the limb's pose to its markers and joint centres, where they leave no freedom.
+
+    Parameters
+    ----------
+    body
+        Its markers and centre; the twist is not open.
+    own : (n_frames, n_markers, 3) m
+        Its markers in the world.
+    joints
+        Centres that always take part.
+    helpers
+        Centres that only stand in where the others do not suffice.
+    min_spread
+        m, as `kinesphere.geometry.rigid.fit_rigid` takes it.
+    """
+    poses = no_poses(len(own))
+    measured = fit_rigid(body.shape, own, min_spread=min_spread).fitted
+    for points in (joints, (*joints, *helpers)):
+        missing = poses.flags == PoseFlag.UNSEEN
+        if not missing.any():
+            break
+        world = np.concatenate([own, *(p.world[:, None] for p in points)], axis=1)
+        local = np.vstack([body.shape, *(p.here for p in points)])
+        weights = 1 / (np.array([*body.noise, *(p.noise for p in points)]) ** 2 + NOISE**2)
+        fit = fit_rigid(local, world[missing], weights, min_spread=min_spread)
+        at = np.flatnonzero(missing)[fit.fitted]
+        poses.rotations[at] = fit.rotations[fit.fitted]
+        poses.shifts[at] = fit.shifts[fit.fitted]
+        poses.flags[at] = np.where(measured[at], PoseFlag.MEASURED, PoseFlag.JOINT_AIDED)
+    return poses
+
+
+def aim(
+    body: Body,
+    own: Array,
+    centre: Array,
+    parent: Poses,
+    normal: Array,
+    flexed: float,
+    poses: Poses,
+) -> None:
+    """Aim a limb along its joint and markers, in the frames that have no pose yet; in place.
+
+    The twist is the least rotation from where the limb usually sits on its parent, unless the next
+    limb lends its own: then ``body.borrow`` is turned onto the normal of the plane of both.
+
+    Parameters
+    ----------
+    own : (n_frames, n_markers, 3) m
+    centre : (n_frames, 3) m
+        The joint towards the parent, in the world.
+    parent
+        Poses of the parent.
+    normal : (n_frames, 3)
+        ``cross`` of the directions of this limb and the next, in the world; NaN where unknown.
+    flexed
+        rad, angle between them from which the twist is borrowed.
+    """
+    arms = body.shape - body.centre
+    order = np.argsort(-np.linalg.norm(arms, axis=1))
+    for m in order:  # the farthest marker that is seen tells the direction best
+        here = unit(arms[m])
+        towards = unit(own[:, m] - centre)
+        base = parent.rotations @ body.rest
+        open_ = (
+            (poses.flags == PoseFlag.UNSEEN) & seen(towards) & np.isfinite(base).all(axis=(1, 2))
+        )
+        if not open_.any():
+            continue
+        least = rotation_between(base[open_] @ here, towards[open_]) @ base[open_]
+        flags = np.full(int(open_.sum()), PoseFlag.TWIST_UNKNOWN, dtype=np.uint8)
+        if body.borrow is not None:
+            lent = borrowing(np.linalg.norm(normal, axis=1), flexed)[open_]
+            least[lent] = _two_vectors(here, body.borrow, towards[open_][lent], normal[open_][lent])
+            flags[lent] = PoseFlag.TWIST_BORROWED
+        poses.rotations[open_] = least
+        poses.shifts[open_] = centre[open_] - least @ body.centre
+        poses.flags[open_] = flags
+
+
+def borrowing(sines: Array, flexed: float) -> Mask:
+    """Return in which frames a joint is flexed enough to lend its plane, with hysteresis.
+
+    Parameters
+    ----------
+    sines : (n_frames,)
+        Sine of the flexion; NaN counts as straight.
+    flexed
+        rad, flexion from which the plane is used; it is let go at `RELEASE` of it.
+    """
+    above = np.nan_to_num(sines) > np.sin(flexed)
+    loose = np.nan_to_num(sines) > np.sin(RELEASE * flexed)
+    runs = np.concatenate([[0], np.cumsum(np.diff(loose.astype(np.int8)) != 0)])
+    taken = np.zeros(runs[-1] + 1 if len(runs) else 1, dtype=bool)
+    np.logical_or.at(taken, runs, above)
+    return np.asarray(loose & taken[runs])
+
+
+def _two_vectors(here: Array, normal: Array, towards: Array, plane: Array) -> Array:
+    """Return rotations that take ``here`` to ``towards`` and ``normal`` near ``plane``."""
+    local = np.stack([here, unit(normal), np.cross(here, unit(normal))], axis=-1)
+    flat = unit(plane - (plane * towards).sum(axis=1, keepdims=True) * towards)
+    world = np.stack([towards, flat, np.cross(towards, flat)], axis=-1)
+    turned: Array = world @ local.T
+    return turned
+
+
+def bridge(
+    poses: Poses, body: Body, parent: Poses | None, centre: Array | None, longest: int
+) -> None:
+    """Fill short gaps from the poses around them, in place, seen from the parent if there is one.
+
+    Parameters
+    ----------
+    centre : (n_frames, 3) m
+        The joint towards the parent, in the world; None for the root.
+    longest
+        Most frames of a gap.
+    """
+    known = poses.flags != PoseFlag.UNSEEN
+    base = np.broadcast_to(np.eye(3), poses.rotations.shape) if parent is None else parent.rotations
+    relative = np.swapaxes(base, 1, 2) @ poses.rotations
+    for a, b in _gaps(known):
+        if a < 1 or b >= len(known) or b - a > longest:
+            continue
+        ends = relative[[a - 1, b]]
+        if not np.isfinite(ends).all():
+            continue
+        turn = Slerp([0.0, 1.0], Rotation.from_matrix(ends))
+        share = np.arange(1, b - a + 1) / (b - a + 1)
+        rotations = base[a:b] @ turn(share).as_matrix()
+        if centre is None or body.centre is None:
+            ends_at = poses.shifts[[a - 1, b]]
+            shifts = ends_at[0] + share[:, None] * (ends_at[1] - ends_at[0])
+        else:
+            shifts = centre[a:b] - rotations @ body.centre
+        ok = np.isfinite(rotations).all(axis=(1, 2)) & np.isfinite(shifts).all(axis=1)
+        at = np.arange(a, b)[ok]
+        poses.rotations[at], poses.shifts[at] = rotations[ok], shifts[ok]
+        poses.flags[at] = PoseFlag.FILLED
+
+
+def _gaps(known: Mask) -> list[tuple[int, int]]:
+    """Return the runs of False as (first, beyond last)."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[True], known, [True]]).astype(np.int8)))
+    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]

@@ -1,0 +1,121 @@
+"""What is known of a joint, and what a person should know about it."""
+
+import numpy as np
+
+from kinesphere.data import Array, Joint, Limb, Observability
+from kinesphere.geometry.rotations import mean_rotation, rotation_angle
+from kinesphere.skeleton.body import Body
+from kinesphere.skeleton.body_axes import unit
+from kinesphere.skeleton.chain import MeasuredJoint
+from kinesphere.skeleton.poses import Poses
+from kinesphere.skeleton.settings import SkeletonSettings
+from kinesphere.skeleton.tree import Tree
+
+VERDICT_NOISE = 5e-4
+"""m, least noise the verdict on a centre reckons with: no recording is better than that."""
+RANGE_SAMPLE = 300
+"""Most orientations compared pair by pair for a range of motion."""
+
+
+def range_of_motion(relative: Array) -> float:
+    """Return the largest angle between two relative orientations, the oddest 5 % left out, in rad.
+
+    Parameters
+    ----------
+    relative : (n_frames, 3, 3)
+        NaN where unknown.
+
+    Returns
+    -------
+    float
+        0 where fewer than two are known.
+    """
+    known = relative[np.isfinite(relative).all(axis=(1, 2))]
+    if len(known) < 2:
+        return 0.0
+    known = known[np.unique(np.linspace(0, len(known) - 1, RANGE_SAMPLE).round().astype(int))]
+    off = rotation_angle(mean_rotation(known).T @ known)
+    usual = known[off <= np.quantile(off, 0.95)]
+    trace = np.einsum("aij,bij->ab", usual, usual)
+    return float(np.arccos(np.clip((trace.min() - 1) / 2, -1.0, 1.0)))
+
+
+def describe_joint(
+    measured: MeasuredJoint, parent: Poses, child: Poses, body: Body, settings: SkeletonSettings
+) -> Joint:
+    """Return the joint with its residual, range of motion, covariance and observability."""
+    fit, model = measured.fit, measured.model
+    assert body.centre is not None
+    gap = np.linalg.norm(parent.carry(fit.in_parent) - child.carry(body.centre), axis=1)
+    known = gap[np.isfinite(gap)]
+    moved = range_of_motion(np.swapaxes(parent.rotations, 1, 2) @ child.rotations)
+    verdict, note = _verdict(measured, moved, settings)
+    return Joint(
+        name=model.name,
+        parent=model.parent,
+        child=model.child,
+        centre_in_parent=fit.in_parent,
+        centre_in_child=body.centre,
+        residual=float(np.sqrt(np.mean(known**2))) if len(known) else np.nan,
+        range_of_motion=moved,
+        covariance=fit.covariance,
+        observability=verdict,
+        note=note,
+    )
+
+
+def _verdict(
+    measured: MeasuredJoint, moved: float, settings: SkeletonSettings
+) -> tuple[Observability, str]:
+    fit = measured.fit
+    inflate = max(1.0, (VERDICT_NOISE / fit.noise) ** 2)
+    deviations = np.sqrt(np.linalg.eigvalsh(fit.data_covariance * inflate))
+    weak = int((deviations > settings.undetermined_mm * 1e-3).sum())
+    degrees = np.rad2deg(moved)
+    placed = f"placed by expectation ({measured.source})"
+    if moved < np.deg2rad(settings.min_range_deg) or weak > 1:
+        return "undetermined", f"range of motion {degrees:.0f}°, centre undetermined, {placed}"
+    if weak == 1:
+        return "hinge", (
+            f"range of motion {degrees:.0f}°, centre open along one axis "
+            f"(± {min(deviations[-1], 9.999) * 1e3:.0f} mm), there {placed}"
+        )
+    return "determined", f"range of motion {degrees:.0f}°"
+
+
+def describe_limb(tree: Tree, body: Body, joints: dict[str, MeasuredJoint]) -> Limb:
+    """Return the limb with its markers, and its length and long axis from joint to far end.
+
+    The far end is the next joint; the middle of the next joints where there are several, the neck of
+    a trunk that has one; the farthest marker where there is none. Of a root it goes from the middle
+    of the joints below to the joint above, in the sense of ``body.up``.
+    """
+    ends = {
+        joint.model.child: joint.fit.in_parent
+        for joint in joints.values()
+        if joint.model.parent == body.name
+    }
+    if body.centre is None:
+        up = np.array([0.0, 1.0, 0.0]) if body.up is None else body.up
+        above = [c for name, c in ends.items() if name in ("trunk", "head")]
+        below = [
+            c for name, c in ends.items() if name not in ("trunk", "head") and "arm" not in name
+        ]
+        if above and below:
+            span = np.mean(above, axis=0) - np.mean(below, axis=0)
+            return _limb(body, float(np.linalg.norm(span)), unit(span))
+        return _limb(body, np.nan, up)
+    if "head" in ends:
+        far = ends["head"]
+    elif ends:
+        far = np.mean(list(ends.values()), axis=0)
+    else:
+        arms = body.shape - body.centre
+        far = body.shape[int(np.linalg.norm(arms, axis=1).argmax())]
+    span = far - body.centre
+    length = float(np.linalg.norm(span))
+    return _limb(body, length, unit(span) if length > 1e-9 else np.array([0.0, 1.0, 0.0]))
+
+
+def _limb(body: Body, length: float, long_axis: Array) -> Limb:
+    return Limb(body.name, body.parent, body.labels, body.shape, length, long_axis)
