@@ -8,3 +8,6 @@ from kinesphere.synthetic.performance import make_performance as make_performanc
 from kinesphere.synthetic.plan import BodyPlan as BodyPlan
 from kinesphere.synthetic.plan import LimbPlan as LimbPlan
 from kinesphere.synthetic.plan import Movement as Movement
+from kinesphere.synthetic.truth import TruthRow as TruthRow
+from kinesphere.synthetic.truth import compare_with_truth as compare_with_truth
+from kinesphere.synthetic.truth import worst_rows as worst_rows
