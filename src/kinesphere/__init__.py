@@ -1,8 +1,59 @@
-"""Kinesphere: optical motion capture into motion that means something, without manual work."""
+"""Kinesphere: optical motion capture into motion that means something, without manual work.
 
+>>> import kinesphere as ks
+>>> solution = ks.solve(ks.read("walk.c3d"))  # doctest: +SKIP
+>>> ks.write(solution, "walk/")  # doctest: +SKIP
+
+Importing is quick and touches nothing: each name below is fetched when it is first used.
+"""
+
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from kinesphere.data import Analog as Analog
+    from kinesphere.data import Event as Event
+    from kinesphere.data import Joint as Joint
+    from kinesphere.data import Limb as Limb
+    from kinesphere.data import Motion as Motion
+    from kinesphere.data import Output as Output
+    from kinesphere.data import Parameters as Parameters
+    from kinesphere.data import Recording as Recording
+    from kinesphere.data import Skeleton as Skeleton
+    from kinesphere.data import Solution as Solution
+    from kinesphere.data import TopologicalModel as TopologicalModel
+    from kinesphere.data import motion_from_parameters as motion_from_parameters
+    from kinesphere.errors import KinesphereError as KinesphereError
+    from kinesphere.io import read as read
+    from kinesphere.io import write as write
+    from kinesphere.pipeline import Settings as Settings
+    from kinesphere.pipeline import solve as solve
+    from kinesphere.report import report_html as report_html
 
 try:
     __version__ = version("kinesphere")
 except PackageNotFoundError:  # run from a source tree that nobody installed
     __version__ = "0+unknown"
+
+_ROOMS = {
+    "data": (
+        "Analog Event Joint Limb Motion Output Parameters Recording Skeleton Solution "
+        "TopologicalModel motion_from_parameters"
+    ),
+    "errors": "KinesphereError",
+    "io": "read write",
+    "pipeline": "Settings solve",
+    "report": "report_html",
+}
+_ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names.split()}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _ROOM_OF:
+        raise AttributeError(f"module 'kinesphere' has no attribute {name!r}")
+    return getattr(import_module(f"kinesphere.{_ROOM_OF[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_ROOM_OF])

@@ -1,1 +1,5 @@
 """One self-contained page that shows what was found."""
+
+from kinesphere.report.page import report_html as report_html
+from kinesphere.report.wording import finding_in_words as finding_in_words
+from kinesphere.report.wording import number_in_words as number_in_words

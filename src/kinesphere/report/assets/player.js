@@ -1,0 +1,332 @@
+/* The moving figure, painted far to near on a plain canvas: no graphics card needed. */
+class Player {
+  constructor(canvas, scene, data, theme) {
+    Object.assign(this, { canvas, scene, data, theme });
+    this.context = canvas.getContext("2d");
+    this.camera = new Camera();
+    this.show = { markers: true, bones: true, axes: false, frames: false, names: false };
+    this.follow = true;
+    this.frame = 0;
+    this.floor = this.findFloor();
+    this.home = this.centreAt(this.firstSeen()) || [0, 0.95, 0];
+    this.reset();
+    this.listen();
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  /* --- the data at one frame --- */
+  point(array, index, frame) {
+    const a = this.data[array];
+    const p = [a.at(3 * index, frame), a.at(3 * index + 1, frame), a.at(3 * index + 2, frame)];
+    return Number.isFinite(p[0]) ? p : null;
+  }
+  pose(limb, frame) {
+    const origin = this.point("origins", limb, frame);
+    const q = this.data.quaternions;
+    const quaternion = [0, 1, 2, 3].map((i) => q.at(4 * limb + i, frame));
+    if (!origin || !Number.isFinite(quaternion[0])) return null;
+    const size = Math.hypot(...quaternion);
+    return { origin, quaternion: quaternion.map((v) => v / size) };
+  }
+  place(pose, p) {
+    return add(pose.origin, turned(pose.quaternion, p));
+  }
+  firstSeen() {
+    for (let f = 0; f < this.scene.n_frames; f++) if (this.point("origins", 0, f)) return f;
+    return 0;
+  }
+  centreAt(frame) {
+    const p = this.point("origins", 0, frame);
+    return p && [p[0], this.floor + 0.56 * this.height(), p[2]];
+  }
+  height() {
+    return Math.max(0.4, Math.min(2.6, this.top - this.floor));
+  }
+  findFloor() {
+    const heights = [];
+    for (const [name, size] of [["markers", this.scene.markers.length], ["origins", this.scene.limbs.length]]) {
+      const step = Math.max(1, Math.floor(this.scene.n_frames / 200));
+      for (let i = 0; i < size; i++)
+        for (let f = 0; f < this.scene.n_frames; f += step) {
+          const y = this.data[name].at(3 * i + 1, f);
+          if (Number.isFinite(y)) heights.push(y);
+        }
+    }
+    heights.sort((a, b) => a - b);
+    const low = heights.length ? heights[Math.floor(heights.length * 0.005)] : 0;
+    this.top = heights.length ? heights[Math.floor(heights.length * 0.98)] : low + 1.7;
+    return Math.abs(low) < 0.15 ? 0 : low - 0.03;
+  }
+
+  /* --- the hand on the camera --- */
+  reset(yaw = 0.72, pitch = 0.16) {
+    this.camera.reset();
+    this.camera.yaw = yaw;
+    this.camera.pitch = pitch;
+    this.camera.distance = 2.05 * this.height();
+    this.camera.target = this.home;
+    this.draw();
+  }
+  listen() {
+    const held = new Map();
+    const canvas = this.canvas;
+    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      held.set(event.pointerId, [event.offsetX, event.offsetY]);
+    });
+    const release = (event) => held.delete(event.pointerId);
+    canvas.addEventListener("pointerup", release);
+    canvas.addEventListener("pointercancel", release);
+    canvas.addEventListener("pointermove", (event) => {
+      const before = held.get(event.pointerId);
+      if (!before) return;
+      const now = [event.offsetX, event.offsetY];
+      const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
+      if (held.size === 2) {
+        const [other] = [...held].filter(([id]) => id !== event.pointerId).map(([, p]) => p);
+        const apart = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
+        this.zoom(apart(before) / apart(now));
+        this.camera.pan(dx / 2, dy / 2);
+      } else if (event.shiftKey || event.buttons & 6) {
+        this.camera.pan(dx, dy);
+      } else {
+        this.camera.yaw -= dx * 0.008;
+        this.camera.pitch = Math.max(-1.5, Math.min(1.55, this.camera.pitch + dy * 0.008));
+      }
+      held.set(event.pointerId, now);
+      this.draw();
+    });
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.zoom(Math.exp(Math.max(-60, Math.min(60, event.deltaY)) * 0.0022));
+      this.draw();
+    }, { passive: false });
+    canvas.addEventListener("dblclick", () => this.reset());
+  }
+  zoom(k) {
+    this.camera.distance = Math.max(0.3, Math.min(40, this.camera.distance * k));
+  }
+
+  /* --- painting --- */
+  draw(frame = this.frame) {
+    this.frame = frame;
+    const { canvas, context } = this;
+    const ratio = window.devicePixelRatio || 1;
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    if (!width || !height) return;
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+      canvas.width = Math.round(width * ratio);
+      canvas.height = Math.round(height * ratio);
+    }
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, width, height);
+    if (this.follow) this.camera.target = this.centreAt(frame) || this.camera.target;
+    this.camera.aim(width, height);
+    const poses = this.scene.limbs.map((_, i) => this.pose(i, frame));
+    const bones = this.show.bones ? this.bones(poses) : [];
+    this.paintFloor();
+    this.paintShadow(bones);
+    const items = [];
+    if (this.show.bones) this.addTrunks(items, bones);
+    for (const bone of bones) this.addBone(items, bone);
+    if (this.show.markers) this.addMarkers(items, frame);
+    if (this.show.frames) this.addFrames(items, poses);
+    if (this.show.axes) this.addAxes(items, poses);
+    items.sort((a, b) => b.depth - a.depth).forEach((item) => item.paint());
+    if (this.show.names) this.paintNames(bones);
+  }
+  bones(poses) {
+    const found = [];
+    this.scene.limbs.forEach((limb, i) => {
+      if (!poses[i] || limb.near.includes(null)) return;
+      const near = this.place(poses[i], limb.near);
+      for (const far of limb.far)
+        if (!far.includes(null)) found.push({ limb, near, far: this.place(poses[i], far) });
+    });
+    return found;
+  }
+  paintFloor() {
+    const { context, camera, theme } = this;
+    const step = 0.5;
+    const middle = [0, 2].map((i) => Math.round(camera.target[i] / step) * step);
+    const reach = 3.5;
+    for (let k = -reach; k <= reach + 1e-6; k += step)
+      for (const along of [0, 1]) {
+        for (let s = -reach; s < reach - 1e-6; s += step) {
+          const a = [middle[0] + (along ? k : s), this.floor, middle[1] + (along ? s : k)];
+          const b = along ? [a[0], a[1], a[2] + step] : [a[0] + step, a[1], a[2]];
+          const [pa, pb] = [camera.project(a), camera.project(b)];
+          if (!pa || !pb) continue;
+          const far = Math.hypot(s + step / 2, k) / reach;
+          context.globalAlpha = Math.max(0, 1 - far * far) * 0.9;
+          context.strokeStyle = theme.grid;
+          context.lineWidth = 1;
+          context.beginPath();
+          context.moveTo(pa[0], pa[1]);
+          context.lineTo(pb[0], pb[1]);
+          context.stroke();
+        }
+      }
+    context.globalAlpha = 1;
+  }
+  paintShadow(bones) {
+    const { context, camera, theme } = this;
+    if (camera.pitch < 0.02) return;
+    context.strokeStyle = theme.shadow;
+    context.lineCap = "round";
+    for (const { near, far } of bones) {
+      const a = camera.project([near[0], this.floor, near[2]]);
+      const b = camera.project([far[0], this.floor, far[2]]);
+      if (!a || !b) continue;
+      context.lineWidth = 0.06 * a[2];
+      context.beginPath();
+      context.moveTo(a[0], a[1]);
+      context.lineTo(b[0], b[1]);
+      context.stroke();
+    }
+  }
+  /* A limb that carries several others is a body, not a stick: fill what its joints span. */
+  addTrunks(items, bones) {
+    const { context, camera, theme } = this;
+    for (const limb of new Set(bones.map((bone) => bone.limb))) {
+      const own = bones.filter((bone) => bone.limb === limb);
+      if (own.length < 3) continue;
+      const points = [own[0].near, ...own.map((bone) => bone.far)].map((p) => camera.project(p));
+      if (points.includes(null)) continue;
+      items.push({
+        depth: Math.max(...points.map((p) => p[3])),
+        paint: () => {
+          context.globalAlpha = 0.22;
+          context.fillStyle = theme.bones[limb.side][1];
+          context.beginPath();
+          hull(points).forEach((p, i) => context[i ? "lineTo" : "moveTo"](p[0], p[1]));
+          context.closePath();
+          context.fill();
+          context.globalAlpha = 1;
+        },
+      });
+    }
+  }
+  addBone(items, { limb, near, far }) {
+    const { context, camera, theme } = this;
+    const [a, b] = [camera.project(near), camera.project(far)];
+    if (!a || !b) return;
+    const thick = Math.hypot(far[0] - near[0], far[1] - near[1], far[2] - near[2]);
+    const wide = Math.max(0.012, Math.min(0.03, 0.075 * thick));
+    const [ra, rb] = [Math.max(1.4, wide * a[2]), Math.max(1.1, wide * 0.7 * b[2])];
+    const angle = Math.atan2(b[1] - a[1], b[0] - a[0]);
+    items.push({
+      depth: (a[3] + b[3]) / 2,
+      paint: () => {
+        const side = [Math.sin(angle), -Math.cos(angle)];
+        const blend = context.createLinearGradient(
+          a[0] + side[0] * ra, a[1] + side[1] * ra, a[0] - side[0] * ra, a[1] - side[1] * ra);
+        const [light, dark] = theme.bones[limb.side];
+        blend.addColorStop(0, side[1] < 0 ? light : dark);
+        blend.addColorStop(1, side[1] < 0 ? dark : light);
+        context.fillStyle = blend;
+        context.strokeStyle = theme.outline;
+        context.lineWidth = 1;
+        context.beginPath();
+        context.arc(a[0], a[1], ra, angle + Math.PI / 2, angle - Math.PI / 2);
+        context.arc(b[0], b[1], rb, angle - Math.PI / 2, angle + Math.PI / 2);
+        context.closePath();
+        context.fill();
+        context.stroke();
+        context.fillStyle = light;
+        context.beginPath();
+        context.arc(a[0], a[1], ra * 1.25, 0, 2 * Math.PI);
+        context.fill();
+        context.stroke();
+      },
+    });
+  }
+  addMarkers(items, frame) {
+    const { context, camera, theme } = this;
+    this.scene.markers.forEach((marker, i) => {
+      const p = this.point("markers", i, frame);
+      const at = p && camera.project(p);
+      if (!at) return;
+      const radius = Math.max(1.5, (marker.used ? 0.011 : 0.007) * at[2]);
+      items.push({
+        depth: at[3] - 0.03,
+        paint: () => {
+          context.fillStyle = marker.used ? theme.marker : theme.faint;
+          context.strokeStyle = theme.outline;
+          context.lineWidth = 0.75;
+          context.beginPath();
+          context.arc(at[0], at[1], radius, 0, 2 * Math.PI);
+          context.fill();
+          context.stroke();
+          if (this.show.names && radius > 2.2) {
+            context.fillStyle = theme.text;
+            context.font = "10px system-ui, sans-serif";
+            context.fillText(marker.label, at[0] + radius + 3, at[1] + 3);
+          }
+        },
+      });
+    });
+  }
+  addArrow(items, from, to, colour, width) {
+    const { context, camera } = this;
+    const [a, b] = [camera.project(from), camera.project(to)];
+    if (!a || !b) return;
+    items.push({
+      depth: (a[3] + b[3]) / 2 - 0.06,
+      paint: () => {
+        context.strokeStyle = context.fillStyle = colour;
+        context.lineWidth = width;
+        context.lineCap = "round";
+        context.beginPath();
+        context.moveTo(a[0], a[1]);
+        context.lineTo(b[0], b[1]);
+        context.stroke();
+        const angle = Math.atan2(b[1] - a[1], b[0] - a[0]);
+        const size = 3 + width;
+        context.beginPath();
+        context.moveTo(b[0] + size * Math.cos(angle), b[1] + size * Math.sin(angle));
+        for (const turn of [2.4, -2.4])
+          context.lineTo(b[0] + size * Math.cos(angle + turn), b[1] + size * Math.sin(angle + turn));
+        context.closePath();
+        context.fill();
+      },
+    });
+  }
+  addFrames(items, poses) {
+    const length = 0.055 * this.height();
+    poses.forEach((pose) => {
+      if (!pose) return;
+      this.theme.frame.forEach((colour, i) => {
+        const tip = [0, 0, 0];
+        tip[i] = length;
+        this.addArrow(items, pose.origin, this.place(pose, tip), colour, 1.8);
+      });
+    });
+  }
+  addAxes(items, poses) {
+    const length = 0.08 * this.height();
+    this.scene.joints.forEach((joint) => {
+      const pose = poses[joint.parent];
+      if (!pose || joint.centre.includes(null)) return;
+      const centre = this.place(pose, joint.centre);
+      joint.axes.forEach((axis, i) => {
+        if (axis.includes(null)) return;
+        const way = turned(pose.quaternion, scaled(axis, length));
+        this.addArrow(items, add(centre, scaled(way, -0.6)), add(centre, way), this.theme.series[i], 2.4);
+      });
+    });
+  }
+  paintNames(bones) {
+    const { context, camera, theme } = this;
+    context.font = "600 11px system-ui, sans-serif";
+    context.fillStyle = theme.text;
+    const named = new Set();
+    for (const { limb, near, far } of bones) {
+      if (named.has(limb.name)) continue;
+      named.add(limb.name);
+      const at = camera.project(scaled(add(near, far), 0.5));
+      if (at) context.fillText(limb.name.replaceAll("_", " "), at[0] + 8, at[1]);
+    }
+  }
+}

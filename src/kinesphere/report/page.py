@@ -1,0 +1,73 @@
+"""One HTML file that shows a solution: it opens offline and carries everything it needs."""
+
+import base64
+import hashlib
+import json
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from jinja2 import Environment, StrictUndefined
+from markupsafe import Markup
+
+import kinesphere
+from kinesphere.data import Solution
+from kinesphere.report.scene import scene_from_solution
+from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles, unique
+
+_SCRIPTS = ("unpack.js", "space.js", "player.js", "curves.js", "heat.js", "page.js")
+
+
+def report_html(solution: Solution, title: str = "") -> str:
+    """Return the report of a solution as one self-contained HTML page.
+
+    The page holds a player of the motion, the curve of every angle and residual, and a table a
+    stage. Trials above 60 Hz or beyond 12,000 frames are thinned for display, which the page
+    says; figures in tables are of every frame.
+
+    Parameters
+    ----------
+    solution
+        As ``kinesphere.solve`` returns it.
+    title
+        A name for the recording; its model and length, if empty.
+    """
+    joints = joint_rows(solution)
+    scene = scene_from_solution(solution)
+    script = Markup("\n".join(_asset(name) for name in _SCRIPTS))
+    page = _environment().from_string(_asset("page.html.j2"))
+    return page.render(
+        title=title or "Solved motion",
+        version=kinesphere.__version__,
+        tiles=tiles(solution),
+        warnings=unique(solution.warnings),
+        joints=joints,
+        charts=chart_order(joints),
+        limbs=limb_rows(solution),
+        steps=step_cards(solution),
+        stride=scene["stride"],
+        shown_rate=f"{scene['rate']:g}",
+        style=Markup(_asset("page.css")),
+        script=script,
+        # Only this very script may run: whatever a label smuggles in stays text.
+        script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        scene=Markup(_json_for_script(scene)),
+    )
+
+
+def _json_for_script(found: Any) -> str:
+    """Return JSON that cannot close the script element it stands in."""
+    text = json.dumps(found, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+@cache
+def _asset(name: str) -> str:
+    return (files("kinesphere.report") / "assets" / name).read_text(encoding="utf-8")
+
+
+@cache
+def _environment() -> Environment:
+    return Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )

@@ -1,0 +1,144 @@
+"""What the page's player and curves need of a solution, thinned to what a screen can show."""
+
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from kinesphere.data import Array, JointFlag, PoseFlag, Skeleton, Solution
+from kinesphere.report.packing import pack
+
+SCREEN_RATE = 60.0
+"""Hz; a screen shows no more."""
+MAX_FRAMES = 12_000
+"""Frames in one page: 200 s at the rate of a screen, about 8 MB with 50 markers."""
+
+_POSITION_STEP = 1e-4  # m: a tenth of a millimetre is far below a pixel
+_QUATERNION_STEP = 1e-4  # 0.01°
+_ANGLE_STEP = 0.01  # deg
+_RESIDUAL_STEP = 0.01  # mm
+
+
+def frame_stride(n_frames: int, rate: float) -> int:
+    """Return how many frames make one of the page: 1 up to SCREEN_RATE and MAX_FRAMES."""
+    by_rate = max(1, int(np.floor(rate / SCREEN_RATE + 1e-6)))
+    by_size = -(-n_frames // MAX_FRAMES)
+    return max(by_rate, by_size)
+
+
+def scene_from_solution(solution: Solution) -> dict[str, Any]:
+    """Return everything the page draws, as JSON can hold it.
+
+    Lengths are in m, residuals in mm, angles in degrees, times in s.
+    """
+    motion, parameters, recording = solution.motion, solution.parameters, solution.recording
+    stride = frame_stride(motion.n_frames, motion.rate)
+    shown = slice(None, None, stride)
+    columns = _shown_markers(solution)
+    used = {label for limb in motion.skeleton.limbs for label in limb.markers}
+    return {
+        "rate": motion.rate / stride,
+        "stride": stride,
+        "first_frame": motion.first_frame,
+        "n_frames": len(motion.rotations[shown]),
+        "markers": [
+            {"label": recording.labels[c], "used": recording.labels[c] in used} for c in columns
+        ],
+        "limbs": _limbs(solution.skeleton),
+        "joints": _joints(solution.skeleton),
+        "arrays": {
+            "markers": pack(recording.markers[shown][:, columns], _POSITION_STEP),
+            "origins": pack(motion.origins[shown], _POSITION_STEP),
+            "quaternions": pack(_quaternions(motion.rotations[shown]), _QUATERNION_STEP),
+            "angles": pack(np.rad2deg(parameters.angles[shown]), _ANGLE_STEP),
+            "twists": pack(np.rad2deg(parameters.twists[shown]), _ANGLE_STEP),
+            "joint_residuals": pack(parameters.residuals[shown] * 1e3, _RESIDUAL_STEP),
+            "limb_residuals": pack(motion.residuals[shown] * 1e3, _RESIDUAL_STEP),
+        },
+        "moving": [runs(parameters.moving[shown, j]) for j in range(parameters.moving.shape[1])],
+        "flags": [
+            {
+                flag.name.lower(): runs((parameters.flags[shown, j] & flag) > 0)
+                for flag in JointFlag
+                if flag.name and (parameters.flags[shown, j] & flag).any()
+            }
+            for j in range(parameters.flags.shape[1])
+        ],
+        "unmeasured": [
+            runs(~np.isin(motion.flags[shown, i], (PoseFlag.MEASURED, PoseFlag.JOINT_AIDED)))
+            for i in range(motion.flags.shape[1])
+        ],
+    }
+
+
+def runs(mask: Array | np.ndarray[Any, Any]) -> list[list[int]]:
+    """Return [first, end) of every stretch of True in a mask (n_frames,)."""
+    edges = np.flatnonzero(np.diff(np.r_[False, np.asarray(mask, dtype=bool), False].astype(int)))
+    return [[int(a), int(b)] for a, b in edges.reshape(-1, 2)]
+
+
+def _shown_markers(solution: Solution) -> list[int]:
+    return [int(c) for c in np.flatnonzero(solution.recording.seen.any(axis=0))]
+
+
+def _limbs(skeleton: Skeleton) -> list[dict[str, Any]]:
+    """Return of each limb the polyline its bone is drawn by, in limb coordinates."""
+    drawn = []
+    for i, limb in enumerate(skeleton.limbs):
+        below = [j.centre_in_parent for j in skeleton.joints if j.parent == limb.name]
+        near = np.zeros(3) if i == 0 else skeleton.joints[i - 1].centre_in_child
+        if not below:
+            length = limb.length if np.isfinite(limb.length) else _reach(limb.marker_positions)
+            below = [near + limb.long_axis * length]
+        drawn.append(
+            {
+                "name": limb.name,
+                "side": side_of(limb.name),
+                "near": _numbers(near),
+                "far": [_numbers(point) for point in below],
+                "length": limb.length if np.isfinite(limb.length) else None,
+            }
+        )
+    return drawn
+
+
+def _joints(skeleton: Skeleton) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": joint.name,
+            "side": side_of(joint.name),
+            "parent": skeleton.limb_names.index(joint.parent),
+            "centre": _numbers(joint.centre_in_parent),
+            "axes": [] if joint.axes is None else [_numbers(axis) for axis in joint.axes],
+        }
+        for joint in skeleton.joints
+    ]
+
+
+def side_of(name: str) -> str:
+    """Return ``left``, ``right`` or ``middle`` by the name of a limb or joint."""
+    return next((side for side in ("left", "right") if name.startswith(f"{side}_")), "middle")
+
+
+def _reach(positions: Array) -> float:
+    if len(positions) < 2:
+        return 0.1
+    return float(np.linalg.norm(np.ptp(positions, axis=0)))
+
+
+def _quaternions(rotations: Array) -> Array:
+    """Return xyzw, (n, m, 3, 3) → (n, m, 4), of continuous sign; NaN stays NaN."""
+    known = np.isfinite(rotations).all(axis=(2, 3))
+    found = np.full((*known.shape, 4), np.nan)
+    if known.any():
+        found[known] = Rotation.from_matrix(rotations[known]).as_quat()
+    for limb in range(found.shape[1]):
+        seen = found[known[:, limb], limb]
+        against = np.einsum("fi,fi->f", seen[1:], seen[:-1]) < 0
+        signs = np.cumprod(np.r_[1.0, np.where(against, -1.0, 1.0)])[: len(seen)]
+        found[known[:, limb], limb] = seen * signs[:, None]
+    return found
+
+
+def _numbers(values: Array) -> list[float | None]:
+    return [round(float(v), 6) if np.isfinite(v) else None for v in values]
