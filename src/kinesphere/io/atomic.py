@@ -27,7 +27,9 @@ def replacing(path: str | Path) -> Iterator[Path]:
         raise UnwritableFile(f"{path} is a folder; a file cannot take its place")
     with _said_plainly(path):
         # the suffix stays: writers that choose by it must not notice
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem[:40]}.", suffix=path.suffix, dir=path.parent)
+        handle, name = tempfile.mkstemp(
+            prefix=f".{path.stem[:40]}.", suffix=path.suffix, dir=path.parent
+        )
     temporary = Path(name)
     try:
         os.close(handle)

@@ -1,0 +1,3 @@
+"""C3D files, read and written without loss."""
+
+from kinesphere.io.c3d.read import read_c3d as read_c3d
