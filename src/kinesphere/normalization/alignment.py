@@ -1,0 +1,124 @@
+"""The turn of each limb's old frame onto its normalized one, from the mean default pose."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from kinesphere.data import Array, Mask, PoseFlag
+from kinesphere.normalization.anatomy import Anatomy
+from kinesphere.normalization.averaging import robust_mean_rotations
+from kinesphere.normalization.limb_frames import canonical_direction, minimal_frame, paper_frame
+from kinesphere.normalization.samples import Samples
+
+_NEAR = np.deg2rad(5.0)  # postures this much farther from the ideal than the best still count
+_MOST = 50  # frames averaged for a limb that the default position does not show
+
+
+@dataclass(eq=False)
+class Alignment:
+    """How every limb's old frame turns onto its new one."""
+
+    turns: Array
+    """(n_limbs, 3, 3) ``old_from_new``."""
+    along: Array
+    """(n_limbs, 3) long axes in the new frames."""
+    off_ideal: dict[str, float] = field(default_factory=dict)
+    """Limb → rad between where it points in the mean default pose and in the ideal one."""
+    elsewhere: list[str] = field(default_factory=list)
+    """Limbs that the default position does not show, or not their twist; aligned with their parent
+    in the frames that do."""
+    twistless: list[str] = field(default_factory=list)
+    """Limbs whose twist no frame tells."""
+    never: list[str] = field(default_factory=list)
+    """Limbs that could not be aligned; they keep their frame."""
+
+
+def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Alignment:
+    """Find every limb's turn.
+
+    The limb's orientation in the body frame is averaged over the chosen samples, robustly; the
+    rule for its frame is then applied once, to that mean pose.
+
+    Parameters
+    ----------
+    samples
+    bodies : (n, 3, 3)
+        ``world_from_body``; only those of chosen samples are read.
+    chosen : (n,)
+        Which samples show the default position.
+    rule
+        ``minimal`` or ``paper``.
+    """
+    anatomy = samples.anatomy
+    n_limbs = len(anatomy.skeleton.limbs)
+    found = Alignment(np.tile(np.eye(3), (n_limbs, 1, 1)), np.full((n_limbs, 3), np.nan))
+    seen = np.asarray(np.isfinite(samples.rotations).all(axis=(2, 3)))
+    flags = samples.motion.flags[samples.frames]
+    for limb, name in enumerate(anatomy.skeleton.limb_names):
+        usable = chosen & seen[:, limb]
+        twist_known = usable & (flags[:, limb] != PoseFlag.TWIST_UNKNOWN)
+        base_from_limb = None
+        if twist_known.any():
+            base_from_limb = _mean_pose(bodies[twist_known], samples.rotations[twist_known, limb])
+        elif limb > 0:
+            base_from_limb = _pose_at_parent(samples, limb, found.turns)
+            if base_from_limb is not None:
+                found.elsewhere.append(name)
+        if base_from_limb is None and usable.any():
+            base_from_limb = _mean_pose(bodies[usable], samples.rotations[usable, limb])
+            found.twistless.append(name)
+        if base_from_limb is None:
+            found.never.append(name)
+            found.along[limb] = anatomy.skeleton.limbs[limb].long_axis
+            continue
+        base_from_new, found.along[limb], off = _frame(anatomy, limb, base_from_limb, rule)
+        found.turns[limb] = base_from_limb.T @ base_from_new
+        found.off_ideal[name] = off
+    return found
+
+
+def _frame(
+    anatomy: Anatomy, limb: int, base_from_limb: Array, rule: str
+) -> tuple[Array, Array, float]:
+    """Return a limb's new frame and long axis, and how far it points from the ideal, rad."""
+    line = anatomy.directions[limb]
+    if not np.isfinite(line).all():  # pelvis and trunk, or a root, or a limb with no extent at all
+        return np.eye(3), np.array([0.0, 1.0, 0.0]), 0.0
+    name, at_end = anatomy.skeleton.limb_names[limb], not anatomy.distal_joints[limb]
+    points = base_from_limb @ line
+    ideal = canonical_direction(name, points, at_end=at_end)
+    off = float(np.arctan2(np.linalg.norm(np.cross(ideal, points)), ideal @ points))
+    if rule == "paper":
+        return *paper_frame(points), off
+    return minimal_frame(points, ideal), ideal, off
+
+
+def _mean_pose(bases: Array, rotations: Array) -> Array:
+    base_from_limb = np.swapaxes(bases, -1, -2) @ rotations
+    return np.asarray(robust_mean_rotations(base_from_limb[:, None])[0])
+
+
+def _pose_at_parent(samples: Samples, limb: int, turns: Array) -> Array | None:
+    """Return a limb's mean pose in its parent's new frame, where the default pose shows too little.
+
+    Over the frames of the whole recording in which the limb points most nearly as it should; None
+    where limb and parent are never seen together with the limb's twist.
+    """
+    anatomy, motion = samples.anatomy, samples.motion
+    parent = int(anatomy.skeleton.parents[limb])
+    rotations = motion.rotations[:, [parent, limb]]
+    usable = np.isfinite(rotations).all(axis=(1, 2, 3))
+    usable &= motion.flags[:, limb] != PoseFlag.TWIST_UNKNOWN
+    if not usable.any():
+        return None
+    parents, limbs = rotations[usable, 0] @ turns[parent], rotations[usable, 1]
+    points = (np.swapaxes(parents, -1, -2) @ limbs) @ np.nan_to_num(anatomy.directions[limb])
+    ideal = canonical_direction(
+        anatomy.skeleton.limb_names[limb],
+        points.mean(axis=0),
+        at_end=not anatomy.distal_joints[limb],
+    )
+    off = np.arccos(np.clip(points @ ideal, -1.0, 1.0))
+    near = np.argsort(off, kind="stable")[:_MOST]
+    near = near[off[near] <= off[near[0]] + _NEAR]
+    return _mean_pose(parents[near], limbs[near])

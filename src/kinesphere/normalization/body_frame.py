@@ -1,0 +1,103 @@
+"""The body's own axes in single frames: x anterior, y superior, z to the right.
+
+Two ways: from the pairs of shoulders and hips, or from the plane closest to all joints
+(Sar Dessai et al. 2006, section 3).
+"""
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.geometry.planes import fit_planes, smallest_rectangles
+
+TURNED_ROUND = np.diag([-1.0, 1.0, -1.0])
+"""Front and back, hence left and right, exchanged: multiply from the right."""
+
+_ACROSS = 0.94  # share of up along the plane's normal from which the body lies, not stands
+
+
+def lateral_frames(to_right: Array, upward: Array) -> Array:
+    """Return body frames from a direction across the body and one along it.
+
+    The lateral axis is kept, the vertical made perpendicular to it: pairs of joints are surer than
+    the line between their middles.
+
+    Parameters
+    ----------
+    to_right : (n, 3) m
+        From left to right: the sum over the pairs, so wide pairs count more.
+    upward : (n, 3) m
+        From the hips to the shoulders, or the world's up.
+
+    Returns
+    -------
+    (n, 3, 3)
+        ``world_from_body``; NaN where a direction is NaN or both are parallel.
+    """
+    z = _unit(to_right)
+    y = _unit(upward - (upward * z).sum(axis=-1, keepdims=True) * z)
+    return np.stack([np.cross(y, z), y, z], axis=-1)
+
+
+def plane_frames(joints: Array, up: Array, trunk: Array) -> Array:
+    """Return body frames whose front may yet be their back.
+
+    The frontal plane is the best plane through the joints; the transverse plane's normal is the
+    projection of up into it, which is what minimizes the angle between the two (paper, section
+    3). Where the plane lies level, the vertical is the longer side of the smallest rectangle around
+    the joints. Either way it points from the trunk's bottom to its top where that is known: a body
+    upside down keeps its head on top.
+
+    Parameters
+    ----------
+    joints : (n, n_joints, 3) m
+        NaN is left out; at least three are needed.
+    up : (3,)
+        Unit vector.
+    trunk : (n, 3) m
+        From the bottom of the trunk to its top; NaN where unknown.
+    """
+    centres, axes, _ = fit_planes(joints)
+    normal = axes[:, :, 2]
+    y = up - (normal @ up)[:, None] * normal
+    level = np.abs(normal @ up) > _ACROSS
+    if level.any():
+        basis = axes[level][:, :, :2]
+        flat = np.einsum("fjk,fki->fji", joints[level] - centres[level][:, None], basis)
+        y[level] = np.einsum("fki,fi->fk", basis, smallest_rectangles(flat)[2])
+    y = _unit(y)
+    y = np.where((y * trunk).sum(axis=1, keepdims=True) < 0, -y, y)
+    return np.stack([normal, y, np.cross(normal, y)], axis=-1)
+
+
+def face_the_same_way(frames: Array, sides: Array) -> Array:
+    """Turn frames round so that all agree on their front.
+
+    Parameters
+    ----------
+    frames : (n, 3, 3)
+        ``root_from_body``, the front of each either way round.
+    sides : (n, 3)
+        A direction to the right in the same coordinates; NaN where no name tells.
+
+    Returns
+    -------
+    (n, 3, 3)
+        On the right side of the names where they tell; else on the side of the direction in which
+        most of the fronts lie, whichever that is.
+    """
+    agree = (frames[:, :, 2] * sides).sum(axis=1)
+    fronts = frames[:, :, 0]
+    known = np.isfinite(fronts).all(axis=1)
+    common = np.linalg.eigh(fronts[known].T @ fronts[known])[1][:, -1]
+    told = np.isfinite(agree) & known
+    if told.any():
+        # the names settle the common front once; a frame they do not reach follows it
+        common = common * np.sign(np.sum(np.sign(agree[told]) * (fronts[told] @ common)) or 1.0)
+    agree = np.where(np.isfinite(agree), agree, fronts @ common)
+    return np.where((agree < 0)[:, None, None], frames @ TURNED_ROUND, frames)
+
+
+def _unit(vectors: Array) -> Array:
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(np.where(length > 1e-9, vectors / length, np.nan))

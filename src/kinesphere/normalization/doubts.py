@@ -1,0 +1,49 @@
+"""Is the best frame a default position at all? Reasons to doubt it, in words."""
+
+from kinesphere.normalization.settings import NormalizationSettings
+
+_TOLERATED = 2.0  # times the deviation that costs 1
+_LYING = 60.0  # deg of tilt from which a trunk lies rather than leans
+_UPSIDE_DOWN = 120.0  # deg
+_SLIM = 0.6  # short over long side of the rectangle around the joints of somebody who stands
+
+
+def doubts(
+    terms: dict[str, float], settings: NormalizationSettings, span: float
+) -> tuple[str, ...]:
+    """Return why a frame is no good default position; nothing where it is.
+
+    Parameters
+    ----------
+    terms
+        Name with unit → what was measured in that frame, as the costs report it.
+    settings
+    span
+        Of the body, m.
+    """
+    arms = "hang" if settings.template == "standing" else "stretch out level"
+    plane = settings.plane_distance * span * 1e3
+    speed = settings.speed * span * 1e3
+    reasons = []
+    tilt = terms.get("trunk_tilt_deg", 0.0)
+    if tilt > _UPSIDE_DOWN:
+        reasons.append(f"the body is upside down (trunk {tilt:.0f} deg from upright)")
+    elif tilt > _LYING:
+        reasons.append(f"the body lies (trunk {tilt:.0f} deg from upright)")
+    elif tilt > _TOLERATED * settings.trunk_tilt:
+        reasons.append(f"the trunk leans by {tilt:.0f} deg")
+    if tilt <= _LYING:  # lying down, every limb is far from the vertical
+        if (angle := terms.get("arm_angle_deg", 0.0)) > _TOLERATED * settings.arm_angle:
+            reasons.append(f"the arms do not {arms} (off by {angle:.0f} deg)")
+        if (angle := terms.get("thigh_angle_deg", 0.0)) > _TOLERATED * settings.thigh_angle:
+            reasons.append(f"a thigh is {angle:.0f} deg off the vertical, as when seated")
+    if (angle := terms.get("knee_flexion_deg", 0.0)) > _TOLERATED * settings.knee_flexion:
+        reasons.append(f"a knee is bent by {angle:.0f} deg")
+    if (distance := terms.get("plane_distance_mm", 0.0)) > _TOLERATED * plane:
+        reasons.append(f"the joints are {distance:.0f} mm off their plane")
+    if (found := terms.get("speed_mm_per_s", 0.0)) > _TOLERATED * speed:
+        reasons.append(f"the body moves at {found:.0f} mm/s")
+    slim = settings.template == "standing" and tilt <= _LYING
+    if slim and (ratio := terms.get("rectangle_ratio", 0.0)) > _SLIM:
+        reasons.append(f"the body is {ratio:.2f} times as wide as tall")
+    return tuple(reasons)

@@ -1,0 +1,111 @@
+"""A body frame for every sampled frame, by whichever way the skeleton allows."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.errors import DegenerateMotion
+from kinesphere.normalization.body_frame import face_the_same_way, lateral_frames, plane_frames
+from kinesphere.normalization.default_position import UP
+from kinesphere.normalization.samples import Samples
+from kinesphere.normalization.settings import NormalizationSettings
+
+_JOINTS_OF_A_PLANE = 4  # any three lie in one, whatever the body does
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """Body frames before anybody has asked which side is the front."""
+
+    root_from_body: Array
+    """(n, 3, 3) in the root limb's old frame, all with the same front; NaN where too little is
+    seen."""
+    method: str
+    named: bool
+    """True where names of left and right settle the front."""
+    needs: str
+    """What a frame must show, in words."""
+    only_best: bool = False
+    """True where the frames mean something in the default position alone."""
+    warnings: tuple[str, ...] = ()
+
+
+def propose_bodies(
+    samples: Samples, settings: NormalizationSettings, facing: str | None
+) -> Proposal:
+    """Place the body's axes in every sample.
+
+    Raises
+    ------
+    DegenerateMotion
+        If neither pairs nor at least four joints are there, nor a world direction to face.
+    """
+    anatomy = samples.anatomy
+    roots = np.swapaxes(samples.rotations[:, 0], -1, -2)
+    across = to_the_right(samples)
+    named = bool(np.isfinite(across).any())
+    if settings.body == "lateral" and named:
+        upward = samples.trunk_lines
+        if settings.vertical == "up" or not np.isfinite(upward).any():
+            upward = np.broadcast_to(UP, across.shape)
+        return Proposal(
+            root_from_body=roots @ lateral_frames(across, upward),
+            method="lateral",
+            named=True,
+            needs=f"left and right {' and '.join(anatomy.pairs)}",
+        )
+    warnings: tuple[str, ...] = ()
+    if settings.body == "lateral":
+        warnings = (
+            "no pair of left and right shoulders or hips is named; the body frame is the plane "
+            "through the joints",
+        )
+    n_joints = samples.joints.shape[1]
+    if n_joints >= _JOINTS_OF_A_PLANE:
+        seen = np.isfinite(samples.joints).all(axis=2).sum(axis=1) >= _JOINTS_OF_A_PLANE
+        joints = np.where(seen[:, None, None], samples.joints, np.nan)
+        bodies = plane_frames(joints, UP, samples.trunk_lines)
+        sides = (roots @ across[..., None])[..., 0]
+        return Proposal(
+            root_from_body=face_the_same_way(roots @ bodies, sides),
+            method="plane",
+            named=named,
+            needs="four joints",
+            warnings=warnings,
+        )
+    if facing is None or facing[0] not in "+-" or facing[-1] == "y":
+        raise DegenerateMotion(
+            f"{n_joints} joints do not tell the body's axes: it takes a pair of shoulders or hips "
+            "named left and right, or four joints, or a level facing such as '+x'"
+        )
+    ahead = np.eye(3)["xyz".index(facing[1])] * (1.0 if facing[0] == "+" else -1.0)
+    body = lateral_frames(np.cross(ahead, UP)[None], UP[None])
+    return Proposal(
+        root_from_body=roots @ body,
+        method="facing",
+        named=False,
+        needs="the root limb",
+        only_best=True,
+        warnings=(
+            f"{n_joints} joints do not tell the body's axes; they are those of the world, facing "
+            f"{facing}",
+        ),
+    )
+
+
+def to_the_right(samples: Samples) -> Array:
+    """Return the sum of the lines from left to right shoulder and hip, (n, 3) m.
+
+    NaN where a frame does not show every pair; should no frame show both, the pair seen most.
+    """
+    lines = [
+        samples.joints[:, right] - samples.joints[:, left]
+        for left, right in samples.anatomy.pairs.values()
+    ]
+    if not lines:
+        return np.full((len(samples.frames), 3), np.nan)
+    together: Array = np.sum(lines, axis=0)
+    if np.isfinite(together).any():
+        return together
+    return max(lines, key=lambda line: np.isfinite(line).sum())

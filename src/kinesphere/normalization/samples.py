@@ -1,0 +1,104 @@
+"""The frames that normalization looks at: a few a second, with joints, limb directions, speeds."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array, Motion
+from kinesphere.normalization.anatomy import Anatomy
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """Every so many frames of a motion."""
+
+    motion: Motion
+    anatomy: Anatomy
+    frames: NDArray[np.intp]
+    """(n,) index of each."""
+    speed_window: float
+    """s."""
+
+    @property
+    def rate(self) -> float:
+        """Hz, of the samples."""
+        step = self.frames[1] - self.frames[0] if len(self.frames) > 1 else 1
+        return float(self.motion.rate / step)
+
+    @cached_property
+    def rotations(self) -> Array:
+        """(n, n_limbs, 3, 3) ``world_from_limb``."""
+        return np.asarray(self.motion.rotations[self.frames])
+
+    @cached_property
+    def joints(self) -> Array:
+        """(n, n_joints, 3) m, joint centres in the world."""
+        return self._joints_at(self.frames)
+
+    @cached_property
+    def directions(self) -> Array:
+        """(n, n_limbs, 3) unit vectors along the limbs in the world."""
+        lines = self.anatomy.directions
+        return np.asarray((self.rotations @ lines[:, :, None])[..., 0])
+
+    @cached_property
+    def velocities(self) -> Array:
+        """(n, n_joints, 3) m/s over the speed window, shorter at the ends; NaN where unknown."""
+        last = self.motion.n_frames - 1
+        half = max(1, round(self.speed_window * self.motion.rate / 2))
+        before, after = np.maximum(self.frames - half, 0), np.minimum(self.frames + half, last)
+        seconds = (after - before) / self.motion.rate
+        with np.errstate(invalid="ignore", divide="ignore"):
+            moved: Array = self._joints_at(after) - self._joints_at(before)
+            return np.asarray(moved / seconds[:, None, None])
+
+    def pair_centre(self, name: str) -> Array:
+        """Return the middle between a left and right joint, (n, 3) m; NaN if not both there."""
+        return np.asarray((self.joint(f"left_{name}") + self.joint(f"right_{name}")) / 2)
+
+    def joint(self, name: str) -> Array:
+        """Return one joint by its anatomical name, (n, 3) m; NaN if not there."""
+        if name not in self.anatomy.joints:
+            return np.full((len(self.frames), 3), np.nan)
+        return np.asarray(self.joints[:, self.anatomy.joints[name]])
+
+    @cached_property
+    def trunk_lines(self) -> Array:
+        """(n, 3) m from the bottom of the trunk to its top; NaN where nothing tells.
+
+        From the middle of the hips, else the lumbar joint, to the middle of the shoulders, else
+        the neck. Legs alone stand for it from the middle of the ankles, or knees, to the hips.
+        """
+        hips = self.pair_centre("hip")
+        bottom = _first_known(hips, self.joint("lumbar"))
+        top = _first_known(self.pair_centre("shoulder"), self.joint("neck"))
+        legs = hips - _first_known(self.pair_centre("ankle"), self.pair_centre("knee"))
+        return _first_known(top - bottom, legs)
+
+    def _joints_at(self, frames: NDArray[np.intp]) -> Array:
+        few = Motion(
+            skeleton=self.motion.skeleton,
+            rotations=self.motion.rotations[frames],
+            origins=self.motion.origins[frames],
+            residuals=self.motion.residuals[frames],
+            flags=self.motion.flags[frames],
+            rate=self.motion.rate,
+        )
+        return few.joint_centres()
+
+
+def take_samples(motion: Motion, rate: float, speed_window: float) -> Samples:
+    """Take every n-th frame, at most ``rate`` (Hz) of them."""
+    step = max(1, int(np.ceil(motion.rate / rate - 1e-9)))
+    frames = np.arange(0, motion.n_frames, step)
+    return Samples(motion, Anatomy(motion.skeleton), frames, speed_window)
+
+
+def _first_known(*choices: Array) -> Array:
+    """Return the first choice that is known in any frame at all."""
+    for choice in choices:
+        if np.isfinite(choice).any():
+            return choice
+    return choices[-1]
