@@ -1,5 +1,7 @@
 """The formats Kinesphere knows, each with the marks it is recognised by."""
 
+from pathlib import Path
+
 from kinesphere.io.registry import Format, register
 
 
@@ -15,5 +17,112 @@ register(
         recognises=_is_c3d,
         reader="kinesphere.io.c3d:read_c3d",
         writers={"Recording": "kinesphere.io.c3d:write_c3d"},
+    )
+)
+
+
+def _is_trc(head: bytes) -> bool:
+    return _text(head).startswith(b"PathFileType")
+
+
+def _is_parameters(head: bytes) -> bool:
+    return _text(head).startswith(b"time_s,root.x_m,")
+
+
+def _is_csv(head: bytes) -> bool:
+    return _text(head).startswith(b"time_s,") and b".x_m" in head.split(b"\n", 1)[0]
+
+
+def _is_model(head: bytes) -> bool:
+    named = b'"kinesphere-model-' in head or (b'"format"' not in head and b'"segments"' in head)
+    return _text(head).startswith(b"{") and named
+
+
+def _is_skeleton(head: bytes) -> bool:
+    named = b'"kinesphere-skeleton-' in head or (b'"format"' not in head and b'"limbs"' in head)
+    return _text(head).startswith(b"{") and named
+
+
+def _is_solution(folder: Path) -> bool:
+    return (folder / "solution.npz").is_file()
+
+
+def _text(head: bytes) -> bytes:
+    return head.removeprefix(b"\xef\xbb\xbf").lstrip()
+
+
+register(
+    Format(
+        name="TRC",
+        suffixes=(".trc",),
+        recognises=_is_trc,
+        reader="kinesphere.io.trc:read_trc",
+        writers={"Recording": "kinesphere.io.trc:write_trc"},
+    )
+)
+register(
+    Format(
+        name="parameter table",
+        suffixes=(".csv",),
+        recognises=_is_parameters,
+        reader="kinesphere.io.parameters_csv:read_parameters",
+        writers={"Parameters": "kinesphere.io.parameters_csv:write_parameters"},
+    )
+)
+register(
+    Format(
+        name="CSV",
+        suffixes=(".csv",),
+        recognises=_is_csv,
+        reader="kinesphere.io.csv:read_csv",
+        writers={"Recording": "kinesphere.io.csv:write_csv"},
+    )
+)
+register(
+    Format(
+        name="topological model",
+        suffixes=(".json",),
+        recognises=_is_model,
+        reader="kinesphere.io.model_json:read_model",
+        writers={"TopologicalModel": "kinesphere.io.model_json:write_model"},
+    )
+)
+register(
+    Format(
+        name="skeleton",
+        suffixes=(".json",),
+        recognises=_is_skeleton,
+        reader="kinesphere.io.skeleton_json:read_skeleton",
+        writers={"Skeleton": "kinesphere.io.skeleton_json:write_skeleton"},
+    )
+)
+register(
+    Format(
+        name="BVH",
+        suffixes=(".bvh",),
+        writers={"Motion": "kinesphere.io.bvh:write_bvh"},
+    )
+)
+register(
+    Format(
+        name="OpenSim model",
+        suffixes=(".osim",),
+        writers={"Skeleton": "kinesphere.io.opensim:write_osim"},
+    )
+)
+register(
+    Format(
+        name="OpenSim motion",
+        suffixes=(".mot",),
+        writers={"Parameters": "kinesphere.io.opensim_motion:write_mot"},
+    )
+)
+register(
+    Format(
+        name="solution folder",
+        suffixes=("",),
+        recognises_folder=_is_solution,
+        reader="kinesphere.io.solution:read_solution",
+        writers={"Solution": "kinesphere.io.solution:write_solution"},
     )
 )
