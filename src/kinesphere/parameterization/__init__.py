@@ -1,1 +1,11 @@
-"""Movement filter, axes, rest position, angles, twist (Sar Dessai et al. 2006, section 4)."""
+"""Movement filter, movement axes, rest position, angles and twist: poses into parameters."""
+
+from kinesphere.parameterization.settings import AngleSettings as AngleSettings
+from kinesphere.parameterization.settings import AxesSettings as AxesSettings
+from kinesphere.parameterization.settings import FilterSettings as FilterSettings
+from kinesphere.parameterization.settings import (
+    ParameterizationSettings as ParameterizationSettings,
+)
+from kinesphere.parameterization.settings import RestSettings as RestSettings
+from kinesphere.parameterization.settings import TwistSettings as TwistSettings
+from kinesphere.parameterization.stage import parameterize as parameterize

@@ -1,0 +1,119 @@
+"""What the name of a joint says: how many axes, which way they point, which way is positive."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from kinesphere.data import Array
+
+MIRROR = np.diag([1.0, 1.0, -1.0])  # left ↔ right in the body frame
+
+# Axes of the body frame (x anterior, y superior, z to the right) about which a left or middle joint
+# moves, flexion first; positive is flexion (dorsiflexion, bending forward), then abduction
+# (turning out, bending to the right). ISB: Wu et al. 2002, doi:10.1016/S0021-9290(01)00222-6, and
+# 2005, doi:10.1016/j.jbiomech.2004.05.042.
+BODY_AXES: Mapping[str, tuple[tuple[float, float, float], ...]] = {
+    "lumbar": ((0, 0, -1), (1, 0, 0), (0, 1, 0)),
+    "neck": ((0, 0, -1), (1, 0, 0), (0, 1, 0)),
+    "shoulder": ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+    "elbow": ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+    "wrist": ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+    "hip": ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
+    "knee": ((0, 0, -1), (1, 0, 0), (0, 1, 0)),
+    "ankle": ((0, 0, 1), (0, 1, 0), (1, 0, 0)),
+}
+N_AXES: Mapping[str, int] = {
+    "lumbar": 2,
+    "neck": 2,
+    "shoulder": 2,
+    "elbow": 1,
+    "wrist": 2,
+    "hip": 2,
+    "knee": 1,
+    "ankle": 2,
+}
+
+
+def joint_kind(name: str) -> str | None:
+    """Return ``knee`` for ``left_knee``; None for a joint nobody named."""
+    kind = name.removeprefix("left_").removeprefix("right_")
+    return kind if kind in BODY_AXES else None
+
+
+def body_axes(name: str) -> Array | None:
+    """Return the body frame's axes for a joint, flexion first, (3, 3); None if nobody named it.
+
+    A right axis is ``−S a`` of the left, so equal angles are mirrored poses.
+    """
+    kind = joint_kind(name)
+    if kind is None:
+        return None
+    axes = np.array(BODY_AXES[kind])
+    return -axes @ MIRROR if name.startswith("right_") else axes
+
+
+def declared_n_axes(name: str, counts: Mapping[str, int]) -> int | None:
+    """Return the number of axes the user or the joint's name asks for; None to find out."""
+    kind = joint_kind(name)
+    if name in counts:
+        return counts[name]
+    if kind is None:
+        return None
+    return counts.get(kind, N_AXES[kind])
+
+
+def named_axes(axes: Array, name: str) -> tuple[Array, list[int]]:
+    """Return axes in anatomical order and sign: each matched to the body axis it is nearest to.
+
+    Parameters
+    ----------
+    axes : (n_axes, 3)
+        Any order, any sign.
+    name
+        Of the joint.
+
+    Returns
+    -------
+    axes : (n_axes, 3)
+        Flexion first; as they were for a joint nobody named.
+    order
+        Index of each in what was given.
+    """
+    body = body_axes(name)
+    if body is None:
+        return axes, list(range(len(axes)))
+    cosines = axes @ body.T
+    free = np.abs(cosines)
+    matches: list[tuple[int, int]] = []
+    for _ in range(len(axes)):
+        i, j = (int(at) for at in np.unravel_index(int(free.argmax()), free.shape))
+        matches.append((j, i))
+        free[i, :] = free[:, j] = -1
+    matches.sort()
+    signed = [axes[i] if cosines[i, j] >= 0 else -axes[i] for j, i in matches]
+    return np.array(signed).reshape(-1, 3), [i for _, i in matches]
+
+
+def substitute_axes(name: str, n_axes: int, direction: Array) -> Array:
+    """Return axes of the body frame for a joint whose movement does not tell them.
+
+    Parameters
+    ----------
+    name
+        Of the joint.
+    n_axes
+        How many are wanted.
+    direction : (3,)
+        Where the limb points on average; a joint nobody named gets the axes of the parent frame
+        that are farthest from it, for a rotation about the limb is twist.
+
+    Returns
+    -------
+    (n_axes, 3)
+        Flexion first.
+    """
+    body = body_axes(name)
+    if body is None:
+        order = np.argsort(np.abs(direction), kind="stable")
+        body = np.eye(3)[order]
+    return body[:n_axes]

@@ -1,0 +1,122 @@
+"""What every axis method takes and gives, and what they share."""
+
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Protocol
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.geometry.rotations import mean_rotation, rotation_log
+from kinesphere.parameterization.samples import JointSamples
+from kinesphere.parameterization.settings import AxesSettings
+
+SAME = np.cos(np.deg2rad(25.0))  # a phase within 25° of an axis moves about it
+MANY_PHASES = 40  # all pairs of the heaviest so many are tried as a start
+
+
+class AxesMethod(Protocol):
+    """An interchangeable way to find movement axes."""
+
+    def __call__(self, samples: JointSamples, n_axes: int, settings: AxesSettings) -> Array:
+        """Return up to ``n_axes`` unit axes in the parent frame, (n_found, 3), any sign."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class PhaseScatter:
+    """Second moments of the rotation vectors of each phase about the phase's mean."""
+
+    scatter: Array
+    """(n_phases, 3, 3) rad², summed over frames."""
+    values: Array
+    """(n_phases, 3) eigenvalues, largest first."""
+    axes: Array
+    """(n_phases, 3) main rotation axis of each phase."""
+
+
+def phase_scatter(samples: JointSamples) -> PhaseScatter:
+    """Return the scatter of ``log(Q Q̄ᵀ)`` of every phase, Q̄ its mean rotation."""
+    scatter = np.zeros((len(samples.phases), 3, 3))
+    for i, (start, stop) in enumerate(samples.phases):
+        rotations = samples.rotations[start:stop]
+        w = rotation_log(rotations @ mean_rotation(rotations).T)
+        scatter[i] = w.T @ w
+    values, vectors = np.linalg.eigh(scatter)
+    return PhaseScatter(scatter, values[:, ::-1], vectors[:, :, 2])
+
+
+def pooled_axes(parts: Array, directions: Array, weights: Array, n_axes: int) -> Array:
+    """Return the top eigenvectors of matrices pooled by the axis their direction is close to.
+
+    Parameters
+    ----------
+    parts : (n, 3, 3)
+        Symmetric, noise taken off.
+    directions : (n, 3)
+        Main direction of each part, any sign.
+    weights : (n,)
+        How much each part says.
+
+    Returns
+    -------
+    (n_found, 3)
+        Heaviest first. Starts from the pair of directions that explains most, so no start is
+        random; fewer than ``n_axes`` where all parts have one direction.
+    """
+    if len(parts) == 0 or not weights.max() > 0:
+        return np.empty((0, 3))
+    axes = directions[_best_start(directions, weights, n_axes)]
+    labels = np.full(len(parts), -2)
+    for _ in range(30):
+        cosines = np.abs(directions @ axes.T)
+        new = np.where(cosines.max(axis=1) > SAME, cosines.argmax(axis=1), -1)
+        if (new == labels).all():
+            break
+        labels = new
+        axes = np.array(
+            [
+                np.linalg.eigh(parts[labels == k].sum(axis=0))[1][:, 2]
+                if (labels == k).any()
+                else a
+                for k, a in enumerate(axes)
+            ]
+        )
+    pooled = np.array([weights[labels == k].sum() for k in range(len(axes))])
+    order = np.argsort(-pooled, kind="stable")
+    return axes[order[pooled[order] > 0]]
+
+
+def _best_start(directions: Array, weights: Array, n_axes: int) -> list[int]:
+    """Return the directions that explain most weight together; fewer if one explains all."""
+    heavy = np.argsort(-weights, kind="stable")[:MANY_PHASES]
+    near = np.maximum(np.abs(directions @ directions[heavy].T) ** 2 - SAME**2, 0) / (1 - SAME**2)
+    gains = weights[:, None] * near
+    best: tuple[int, ...] = (int(gains.sum(axis=0).argmax()),)
+    for count in range(2, n_axes + 1):
+        if count == 2:
+            trials: list[tuple[int, ...]] = list(combinations(range(len(heavy)), 2))
+        else:  # a third joins the best two
+            trials = [(*best, k) for k in range(len(heavy)) if k not in best]
+        trials = [
+            t
+            for t in trials
+            if all(near[heavy[a], b] == 0 for a, b in combinations(t, 2))  # further than 25° apart
+        ]
+        if not trials:
+            break
+        best = max(trials, key=lambda t: float(gains[:, list(t)].max(axis=1).sum()))
+    return [int(heavy[k]) for k in best]
+
+
+def plane_normal(points: Array, weights: Array | None = None) -> Array:
+    """Return the normal of the plane through the origin that is closest to points, (n, 3)."""
+    w = np.ones(len(points)) if weights is None else weights
+    normal: Array = np.linalg.eigh((points * w[:, None]).T @ points)[1][:, 0]
+    return normal
+
+
+def moving_positions(samples: JointSamples) -> Array:
+    """Return the positions of all phases one after another, (n, 3)."""
+    parts = [samples.positions[start:stop] for start, stop in samples.phases]
+    return np.concatenate(parts) if parts else np.empty((0, 3))

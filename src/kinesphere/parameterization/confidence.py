@@ -1,0 +1,210 @@
+"""How far movement axes can be trusted: support, range, one axis at a time, agreement of halves."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.geometry.rotations import mean_rotation, rotation_log
+from kinesphere.parameterization.samples import JointSamples, Phase
+from kinesphere.parameterization.settings import AxesSettings
+
+Finder = Callable[[JointSamples], Array]
+"""Samples → (n_found, 3) axes: an axis method with its settings bound."""
+
+LEAST_SHARE = 0.2  # of an axis' frames in each half of the recording, for the halves to be compared
+PERCENTILES = (5.0, 95.0)  # a range of motion leaves the extremes out
+
+
+@dataclass(frozen=True, eq=False)
+class AxesQuality:
+    """What speaks for and against a set of axes."""
+
+    labels: Array
+    """(n_phases,) which axis a phase moves about."""
+    ranges: Array
+    """(n_axes,) rad, range of motion about each axis in its phases."""
+    conditioning: Array
+    """(n_axes,) ratio of the two largest eigenvalues of the pooled rotation scatter."""
+    explained: float
+    """Share of the limb's movement that is rotation about the phase's own axis."""
+    halves: Array
+    """(n_axes,) rad, largest disagreement of axes found from two halves; NaN where untested."""
+    heights: Array
+    """(n_axes,) cosine of the cone on which the limb moves about each axis; NaN without phases."""
+
+    @property
+    def uncertainty(self) -> Array:
+        """(n_axes,) rad, standard deviation of each axis as its halves suggest it.
+
+        Halves have twice the variance of the whole, their difference four times.
+        """
+        return self.halves / 2
+
+
+def assess_axes(samples: JointSamples, axes: Array, find: Finder) -> AxesQuality:
+    """Measure how well phases support axes, (n_axes, 3), that ``find`` got from them."""
+    n_axes, n_phases = len(axes), len(samples.phases)
+    labels = np.zeros(n_phases, dtype=int)
+    pooled = np.zeros((n_axes, 3, 3))
+    explained = total = 0.0
+    for i, (start, stop) in enumerate(samples.phases):
+        w = _swing_vectors(samples, start, stop)
+        across = axes - np.outer(axes @ w.normal, w.normal)
+        across /= np.maximum(np.linalg.norm(across, axis=1), 1e-9)[:, None]
+        about = ((w.vectors @ across.T) ** 2).sum(axis=0)
+        labels[i] = int(about.argmax())
+        explained += float(about.max())
+        total += float((w.vectors**2).sum())
+        pooled[labels[i]] += w.vectors.T @ w.vectors
+    values = np.linalg.eigvalsh(pooled)
+    ranges, heights = np.zeros(n_axes), np.full(n_axes, np.nan)
+    for k, axis in enumerate(axes):
+        mine = [samples.positions[a:b] for (a, b), at in _zip(samples, labels) if at == k]
+        if mine:
+            p = np.concatenate(mine)
+            heights[k] = float(np.median(p @ axis))
+            middle = p.mean(axis=0)
+            azimuth = np.arctan2(
+                np.cross(middle, p) @ axis, p @ middle - (p @ axis) * (middle @ axis)
+            )
+            ranges[k] = float(np.diff(np.percentile(azimuth, PERCENTILES))[0])
+    return AxesQuality(
+        labels=labels,
+        ranges=ranges,
+        conditioning=values[:, 2] / np.maximum(values[:, 1], 1e-12),
+        explained=explained / total if total > 0 else 0.0,
+        halves=halves_disagreement(samples, axes, labels, find),
+        heights=heights,
+    )
+
+
+def halves_disagreement(samples: JointSamples, axes: Array, labels: Array, find: Finder) -> Array:
+    """Return the largest angle between axes found from two halves, (n_axes,) rad.
+
+    Three ways to halve: every phase cut in its middle; phases dealt out in turn; the recording cut
+    in its middle, where both halves hold enough of every movement. NaN if none was possible.
+    """
+    worst = np.full(len(axes), np.nan)
+    for first, second in _splits(samples, labels, len(axes)):
+        pairs = [_matched(find(samples.with_phases(half)), axes) for half in (first, second)]
+        cosines = np.abs((pairs[0] * pairs[1]).sum(axis=1))
+        sines = np.linalg.norm(np.cross(pairs[0], pairs[1]), axis=1)
+        apart = np.where(np.isnan(cosines), np.pi / 2, np.arctan2(sines, cosines))
+        worst = np.fmax(worst, apart)
+    return worst
+
+
+def reasons_to_doubt(quality: AxesQuality, axes: Array, s: AxesSettings) -> list[str]:
+    """Return why these are not the axes of main movements, each a clause; or nothing.
+
+    Parameters
+    ----------
+    quality
+        Of ``axes``.
+    axes : (n_axes, 3)
+    s
+        The limits.
+    """
+    doubts: list[str] = []
+    if (small := np.rad2deg(quality.ranges.min())) < s.smallest_range:
+        doubts.append(
+            f"the range of motion about an axis is {small:.0f}°, {s.smallest_range:.0f}° are needed"
+        )
+    if not np.isfinite(quality.halves).all():
+        doubts.append("there is too little movement to compare two halves of it")
+    elif (apart := np.rad2deg(quality.halves.max())) > s.largest_disagreement:
+        doubts.append(f"axes from two halves of the data differ by {apart:.0f}°")
+    if len(axes) > 1 and quality.explained < s.smallest_explained:
+        doubts.append(
+            f"rotation about one axis at a time explains only {quality.explained:.0%} "
+            "of the movement"
+        )
+    for i in range(1, len(axes)):
+        for j in range(i):
+            angle = np.rad2deg(np.arccos(min(1.0, abs(float(axes[i] @ axes[j])))))
+            if angle < s.smallest_angle:
+                doubts.append(f"two axes are {angle:.0f}° apart, too close to be two")
+    return doubts
+
+
+def observed_n_axes(samples: JointSamples) -> int | None:
+    """Return how many axes the swing of the limb shows, 1 or 2; None without movement.
+
+    One if the second eigenvalue of the rotation scatter, pooled over phases and without the
+    rotation about the limb, is below 5 % of the first.
+    """
+    pooled = np.zeros((3, 3))
+    for start, stop in samples.phases:
+        w = _swing_vectors(samples, start, stop).vectors
+        pooled += w.T @ w
+    values = np.linalg.eigvalsh(pooled)
+    if not values[2] > 0:
+        return None
+    return 1 if values[1] < 0.05 * values[2] else 2
+
+
+@dataclass(frozen=True, eq=False)
+class _Swing:
+    vectors: Array  # (n, 3) rad, rotation vectors about the phase's mean, across the limb
+    normal: Array  # (3,) mean direction of the limb
+
+
+def _swing_vectors(samples: JointSamples, start: int, stop: int) -> _Swing:
+    rotations = samples.rotations[start:stop]
+    w = rotation_log(rotations @ mean_rotation(rotations).T)
+    p = samples.positions[start:stop].mean(axis=0)
+    p /= max(float(np.linalg.norm(p)), 1e-9)
+    return _Swing(w - np.outer(w @ p, p), p)
+
+
+def _zip(samples: JointSamples, labels: Array) -> list[tuple[Phase, int]]:
+    return [(phase, int(label)) for phase, label in zip(samples.phases, labels, strict=True)]
+
+
+def _splits(
+    samples: JointSamples, labels: Array, n_axes: int
+) -> list[tuple[tuple[Phase, ...], tuple[Phase, ...]]]:
+    phases = samples.phases
+    if not phases:
+        return []
+    splits = [
+        (
+            tuple((a, (a + b) // 2) for a, b in phases if b - a >= 4),
+            tuple(((a + b) // 2, b) for a, b in phases if b - a >= 4),
+        )
+    ]
+    dealt: tuple[list[Phase], list[Phase]] = ([], [])
+    turn = [0] * n_axes
+    for phase, label in _zip(samples, labels):
+        dealt[turn[label] % 2].append(phase)
+        turn[label] += 1
+    if min(turn) >= 2:
+        splits.append((tuple(dealt[0]), tuple(dealt[1])))
+    frames = np.concatenate([np.arange(a, b) for a, b in phases])
+    cut = int(np.median(frames))
+    early = tuple((a, min(b, cut)) for a, b in phases if a < cut - 4)
+    late = tuple((max(a, cut), b) for a, b in phases if b > cut + 4)
+    early_share = np.zeros(n_axes)
+    length = np.zeros(n_axes)
+    for (a, b), label in _zip(samples, labels):
+        early_share[label] += max(0, min(b, cut) - a)
+        length[label] += b - a
+    share = early_share / np.maximum(length, 1)
+    if (np.abs(share - 0.5) <= 0.5 - LEAST_SHARE).all():
+        splits.append((early, late))
+    return splits
+
+
+def _matched(found: Array, axes: Array) -> Array:
+    """Return for each axis the found one closest to it, each used once; NaN where none is left."""
+    matched = np.full(axes.shape, np.nan)
+    if len(found) == 0:
+        return matched
+    free = np.abs(axes @ found.T)
+    for _ in range(min(free.shape)):
+        i, j = np.unravel_index(int(free.argmax()), free.shape)
+        matched[i] = found[j]
+        free[i, :] = free[:, j] = -1
+    return matched

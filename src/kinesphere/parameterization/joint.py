@@ -1,0 +1,303 @@
+"""One joint: its movement, its axes, its rest orientation, and whether they can be trusted."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinesphere.data import Array, AxesSource, Json, Mask
+from kinesphere.geometry.rotations import mean_rotation, rotation_between
+from kinesphere.parameterization.anatomy import (
+    declared_n_axes,
+    joint_kind,
+    named_axes,
+    substitute_axes,
+)
+from kinesphere.parameterization.angles import JointAngles, solve_angles
+from kinesphere.parameterization.axes import find_axes
+from kinesphere.parameterization.axes.universal_joint import reference_rotation
+from kinesphere.parameterization.confidence import (
+    AxesQuality,
+    assess_axes,
+    observed_n_axes,
+    reasons_to_doubt,
+)
+from kinesphere.parameterization.movement_filter import Movement, find_movement
+from kinesphere.parameterization.rest import paper_rest, rest_target, robust_rest
+from kinesphere.parameterization.samples import JointSamples, runs, smooth_rotations
+from kinesphere.parameterization.settings import (
+    AxesSettings,
+    ParameterizationSettings,
+    parse_counts,
+)
+
+TRIAL_FRAMES = 2000  # enough to tell which order of axes serves better
+CLEARLY = 0.95  # another order must lower the twist at least to this share to be taken
+
+
+@dataclass(frozen=True, eq=False)
+class JointFit:
+    """What parameterizes one joint."""
+
+    axes: Array
+    """(n_axes, 3) unit vectors in the parent, distal first."""
+    rest: Array
+    """(3, 3) ``parent_from_child`` where all angles are zero."""
+    source: AxesSource
+    uncertainty: Array
+    """(n_axes,) rad; NaN where unknown."""
+    findings: Mapping[str, Json]
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class JointView:
+    """One joint as the whole recording shows it."""
+
+    name: str
+    rotations: Array
+    """(n_frames, 3, 3) ``parent_from_child``; NaN where unseen."""
+    long_axis: Array
+    """(3,) in the child."""
+    twist_known: Mask
+    """(n_frames,) False where the orientation about the limb is arbitrary."""
+    samples: JointSamples
+    """Smoothed, with the movement phases inside the calibration window."""
+    movement: Movement
+    calibration: Mask
+    """(n_frames,) seen frames that axes and rest are taken from."""
+
+    @property
+    def gravity(self) -> Array:
+        """(3,) centre of gravity of the samples; the limb aligned with its parent without any."""
+        p = self.samples.positions[self.calibration]
+        return np.asarray(p.mean(axis=0)) if len(p) else self.long_axis
+
+
+def view_joint(
+    name: str,
+    rotations: Array,
+    long_axis: Array,
+    twist_known: Mask,
+    rate: float,
+    calibration: Mask,
+    settings: ParameterizationSettings,
+) -> JointView:
+    """Smooth one joint's rotations and find its movement phases; arguments as in `JointView`."""
+    literal = settings.filter.method == "paper"
+    smooth = rotations if literal else smooth_rotations(rotations, rate, settings.filter.cutoff)
+    positions = smooth @ long_axis
+    movement = find_movement(positions, rate, settings.filter, calibration)
+    seen = np.asarray(np.isfinite(positions).all(axis=1) & calibration)
+    samples = JointSamples(smooth, positions, runs(movement.moving & seen), rate)
+    return JointView(name, rotations, long_axis, twist_known, samples, movement, seen)
+
+
+def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
+    """Find the axes and the rest orientation of one joint.
+
+    Parameters
+    ----------
+    view
+        The joint; a known name declares how many axes it has and their signs.
+    settings
+        Methods and limits.
+
+    Returns
+    -------
+    JointFit
+        Never an exception for want of movement: then the axes are the body's, and a warning says
+        why.
+    """
+    options = settings.axes
+    if view.calibration.any() and view.twist_known[view.calibration].mean() < 0.5:
+        options = replace(options, method="small-circle")  # orientations tell nothing here
+    observed = observed_n_axes(view.samples)
+    declared = declared_n_axes(view.name, parse_counts(options.counts))
+    n_axes = declared or observed or 2
+
+    axes, quality, doubts = _movement_axes(view.samples, n_axes, options)
+    if len(axes) < n_axes or (doubts and options.on_doubt == "body"):
+        source: AxesSource = "body"
+        axes = substitute_axes(view.name, n_axes, view.gravity)[::-1]
+        rest = _body_rest(view, axes, settings)
+        uncertainty = np.full(n_axes, np.nan)
+    else:
+        assert quality is not None
+        source = "movement"
+        axes, rest, order = _movement_rest(view, axes, quality, settings)
+        uncertainty = quality.uncertainty[order]
+    if joint_kind(view.name) is None:
+        axes = _first_excursion_positive(view, axes, rest, settings)
+    findings: dict[str, Json] = {
+        "n_axes": n_axes,
+        "n_axes_by_data": observed,
+        "axes_method": options.method,
+        "axes_source": source,
+        "doubts": list(doubts),
+        **_quality_findings(quality),
+    }
+    warnings = _warnings(view, source, doubts, options, declared, observed)
+    return JointFit(axes, rest, source, uncertainty, findings, tuple(warnings))
+
+
+def solve_joint(
+    view: JointView, axes: Array, rest: Array, settings: ParameterizationSettings
+) -> JointAngles:
+    """Return angles and twist of every frame, never smoothed."""
+    return solve_angles(
+        view.rotations,
+        axes,
+        rest,
+        view.long_axis,
+        view.twist_known,
+        settings.angles,
+        settings.twist,
+    )
+
+
+def _movement_axes(
+    samples: JointSamples, n_axes: int, options: AxesSettings
+) -> tuple[Array, AxesQuality | None, list[str]]:
+    """Return axes from the movement, how good they are, and what speaks against them."""
+    if options.method == "body":
+        return np.empty((0, 3)), None, []
+
+    def find(half: JointSamples) -> Array:
+        return find_axes(half, n_axes, options)
+
+    axes = find(samples)
+    if len(axes) == 0:
+        return axes, None, ["the limb hardly moves"]
+    quality = assess_axes(samples, axes, find)
+    if len(axes) < n_axes:
+        return axes, quality, [f"only {len(axes)} of {n_axes} main movements is there"]
+    return axes, quality, reasons_to_doubt(quality, axes, options)
+
+
+def _movement_rest(
+    view: JointView, found: Array, quality: AxesQuality, settings: ParameterizationSettings
+) -> tuple[Array, Array, list[int]]:
+    """Return axes distal first, the rest orientation, and where each axis stood in ``found``."""
+    axes, order = named_axes(found, view.name)
+    axes, order = axes[::-1], order[::-1]  # flexion proximal, unless another order serves better
+    if settings.axes.method == "universal-joint" and len(axes) == 2:
+        # this method knows the order, and its distal axis holds for its own reference orientation
+        axes, order = (axes, order) if order[0] == 0 else (axes[::-1], order[::-1])
+        return axes, reference_rotation(view.samples), order
+    rest = _rest(view, axes, quality.heights[order], settings)
+    if len(axes) == 2:
+        plain, other = (_order_cost(view, tried, rest, settings) for tried in (axes, axes[::-1]))
+        if other[0] < plain[0] or (other[0] == plain[0] and other[1] < CLEARLY * plain[1]):
+            axes, order = axes[::-1], order[::-1]
+    return axes, rest, order
+
+
+def _rest(
+    view: JointView, axes: Array, heights: Array, settings: ParameterizationSettings
+) -> Array:
+    anatomical = (
+        settings.rest.method == "robust"
+        and settings.rest.zero == "anatomical"
+        and joint_kind(view.name) is not None
+    )
+    zero = view.long_axis if anatomical else None
+    rotations, positions = view.samples.rotations, view.samples.positions
+    at = np.flatnonzero(view.calibration)
+    if settings.rest.method == "paper":
+        target, _ = rest_target(axes, np.zeros(len(axes)), view.gravity, None)
+        return paper_rest(rotations[at], positions[at], target)
+    target, _ = rest_target(axes, heights, view.gravity, zero)
+    slow = ~view.movement.moving[at]
+    return robust_rest(rotations[at], positions[at], slow, axes, target, settings.rest)
+
+
+def _body_rest(view: JointView, axes: Array, settings: ParameterizationSettings) -> Array:
+    """Return the rest orientation that goes with axes of the body frame.
+
+    The limb aligned with its parent; a one-axis joint's is tilted onto the cone the limb really
+    moves on; a joint nobody named has no alignment, so the mean orientation serves.
+    """
+    if joint_kind(view.name) is None:
+        at = view.calibration
+        return mean_rotation(view.samples.rotations[at]) if at.any() else np.eye(3)
+    if len(axes) > 1 or not view.calibration.any():
+        return np.eye(3)
+    height = float(np.median(view.samples.positions[view.calibration] @ axes[0]))
+    target, unique = rest_target(axes, np.array([height]), view.gravity, view.long_axis)
+    del settings
+    return rotation_between(view.long_axis, target) if unique else np.eye(3)
+
+
+def _order_cost(
+    view: JointView, axes: Array, rest: Array, settings: ParameterizationSettings
+) -> tuple[float, float]:
+    """Return the share of unreachable frames (in whole percent) and the rms twist in rad."""
+    at = np.flatnonzero(np.isfinite(view.rotations[:, 0, 0]))
+    at = at[:: max(1, len(at) // TRIAL_FRAMES)]
+    solved = solve_angles(
+        view.rotations[at],
+        axes,
+        rest,
+        view.long_axis,
+        view.twist_known[at],
+        settings.angles,
+        replace(settings.twist, method="closed-form"),
+    )
+    unreachable = np.mean(solved.excess > np.deg2rad(settings.angles.unreachable))
+    known = np.isfinite(solved.twists)
+    twist = float(np.sqrt(np.mean(solved.twists[known] ** 2))) if known.any() else 0.0
+    return round(float(unreachable), 2), twist
+
+
+def _first_excursion_positive(
+    view: JointView, axes: Array, rest: Array, settings: ParameterizationSettings
+) -> Array:
+    """Return axes turned so that the first large angle about each is positive."""
+    angles = solve_joint(view, axes, rest, settings).angles[:, : len(axes)]
+    signs = np.ones(len(axes))
+    for k, column in enumerate(angles.T):
+        known = column[np.isfinite(column)]
+        if len(known) and (largest := np.abs(known).max()) > 0:
+            signs[k] = np.sign(known[np.abs(known) >= largest / 2][0])
+    return axes * signs[:, None]
+
+
+def _quality_findings(quality: AxesQuality | None) -> dict[str, Json]:
+    if quality is None:
+        return {}
+    halves = np.rad2deg(quality.halves)
+    return {
+        "ranges_deg": [float(r) for r in np.rad2deg(quality.ranges)],
+        "conditioning": [float(c) for c in quality.conditioning],
+        "explained": quality.explained,
+        "halves_disagreement_deg": [float(h) if np.isfinite(h) else None for h in halves],
+    }
+
+
+def _warnings(
+    view: JointView,
+    source: AxesSource,
+    doubts: list[str],
+    options: AxesSettings,
+    declared: int | None,
+    observed: int | None,
+) -> list[str]:
+    warnings: list[str] = []
+    name = view.name
+    if not view.calibration.any():
+        return [f"{name}: never seen; its axes are those of the body frame"]
+    if doubts and source == "body":
+        warnings.append(f"{name}: {'; '.join(doubts)}. Its axes are those of the body frame")
+    elif doubts:
+        warnings.append(f"{name}: doubtful axes, for {'; '.join(doubts)}")
+    if view.samples.phases and not view.movement.valley:
+        warnings.append(
+            f"{name}: nothing parts movement from rest; a threshold of "
+            f"{np.rad2deg(view.movement.threshold):.1f} deg/s was taken"
+        )
+    if declared == 2 and observed == 1 and source == "movement":
+        warnings.append(f"{name}: has two axes, but moves about one only")
+    if options.method == "small-circle" and not view.twist_known.any():
+        warnings.append(f"{name}: nothing tells its twist; axes are from positions alone")
+    return warnings

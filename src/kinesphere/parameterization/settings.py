@@ -1,0 +1,243 @@
+"""What can be chosen about the parameterization, one group of settings for each of its steps."""
+
+from dataclasses import dataclass, field, fields
+
+from kinesphere.data import Json, check_settings, setting, settings_as_json
+from kinesphere.errors import BadSetting
+
+PAPER = "Sar Dessai, Hornung & Kobbelt 2006"
+
+
+@dataclass(frozen=True)
+class FilterSettings:
+    """How moving and stationary phases are told apart (paper section 4.1)."""
+
+    method: str = setting(
+        "bounded-valley",
+        "how the threshold speed is found",
+        choices=("bounded-valley", "log-speed", "paper"),
+        source=f"{PAPER}, section 4.1 for 'paper'; the other two are measured rules",
+    )
+    window: float = setting(
+        0.2,
+        "time over which a speed is taken (not by 'paper')",
+        unit="s",
+        low=0.01,
+        high=2.0,
+        source="recordings run from 12 to 300 Hz: never frames",
+    )
+    cutoff: float = setting(
+        4.0,
+        "low-pass of the orientations the axes are found from; 0 for none (never by 'paper')",
+        unit="Hz",
+        low=0.0,
+        high=50.0,
+        source="zero phase, calibration only; delivered angles are never smoothed",
+    )
+    slowest: float = setting(
+        4.0, "lowest threshold speed of 'bounded-valley'", unit="deg/s", low=0.0, high=1000.0
+    )
+    fastest: float = setting(
+        40.0, "highest threshold speed of 'bounded-valley'", unit="deg/s", low=0.0, high=1000.0
+    )
+    fallback: float = setting(
+        12.6,
+        "threshold speed where the histogram has no valley",
+        unit="deg/s",
+        low=0.0,
+        high=1000.0,
+        source="middle of 4 and 40 deg/s on a logarithmic scale",
+    )
+    bridge: float = setting(
+        0.24, "shorter rests inside a movement belong to it (not by 'paper')", unit="s", low=0.0
+    )
+    shortest: float = setting(
+        0.16, "shorter movements are none (not by 'paper')", unit="s", low=0.0
+    )
+
+    def __post_init__(self) -> None:
+        check_settings(self)
+        if self.slowest >= self.fastest:
+            raise BadSetting(
+                f"slowest is {self.slowest} deg/s; it must be below fastest, {self.fastest} deg/s"
+            )
+
+
+AXES_METHODS = (
+    "phase-log-pca",
+    "direction-joining",
+    "pca",
+    "em",
+    "em-restarts",
+    "sara",
+    "small-circle",
+    "universal-joint",
+)
+
+
+@dataclass(frozen=True)
+class AxesSettings:
+    """How the axes a limb moves about are found (paper section 4.2)."""
+
+    method: str = setting(
+        "phase-log-pca",
+        "axis extraction; 'body' takes the axes of the body frame",
+        choices=(*AXES_METHODS, "body"),
+        source=f"{PAPER}, section 4.2: pca, em, direction-joining",
+    )
+    counts: str = setting(
+        "",
+        "number of axes by joint, e.g. 'left_wrist=1, hip=2'; a name without side means both; "
+        "others by the joint's name, or by the data where it has none",
+    )
+    on_doubt: str = setting(
+        "body",
+        "what serves where the main movements are missing: body axes, or the doubtful ones",
+        choices=("body", "movement"),
+    )
+    largest_disagreement: float = setting(
+        10.0,
+        "angle between axes from two halves of the data, from which on they are doubted",
+        unit="deg",
+        low=0.0,
+        high=90.0,
+    )
+    smallest_range: float = setting(
+        12.0,
+        "range of motion about an axis, below which it is doubted",
+        unit="deg",
+        low=0.0,
+        high=180.0,
+        source="at 15-20 deg and 3 deg of correlated noise every estimator fails",
+    )
+    smallest_explained: float = setting(
+        0.8,
+        "share of the movement that rotations about one axis at a time must explain",
+        low=0.0,
+        high=1.0,
+        source="main movements 0.9 and more, free motion 0.5-0.8",
+    )
+    smallest_angle: float = setting(
+        20.0, "two axes closer than this are one", unit="deg", low=0.0, high=90.0
+    )
+    joining_angle: float = setting(
+        15.0,
+        "delta of Direction Joining",
+        unit="deg",
+        low=1.0,
+        high=60.0,
+        source=f"{PAPER}, section 4.2",
+    )
+    cell: float = setting(
+        5.0,
+        "size of a stratification cell on the joint sphere",
+        unit="deg",
+        low=0.5,
+        high=30.0,
+        source="the paper names none; 5-10 deg make no difference on smoothed data",
+    )
+    restarts: int = setting(30, "random starts of 'em-restarts'", low=1, high=1000)
+
+    def __post_init__(self) -> None:
+        check_settings(self)
+        parse_counts(self.counts)
+
+
+@dataclass(frozen=True)
+class RestSettings:
+    """Where all angles are zero (paper section 4.3)."""
+
+    method: str = setting(
+        "robust",
+        "rest orientation: mean of slow samples, or the paper's single nearest sample",
+        choices=("robust", "paper"),
+        source=f"{PAPER}, section 4.3 for 'paper'",
+    )
+    zero: str = setting(
+        "anatomical",
+        "zero of a one-axis joint: limb aligned with the body frame, or the samples' middle",
+        choices=("anatomical", "centre-of-gravity"),
+    )
+    radius: float = setting(
+        5.0, "samples this close to the rest position are averaged", unit="deg", low=0.1, high=45.0
+    )
+
+    def __post_init__(self) -> None:
+        check_settings(self)
+
+
+@dataclass(frozen=True)
+class AngleSettings:
+    """How the angles about the axes are chosen (paper section 4.4)."""
+
+    branch: str = setting(
+        "viterbi",
+        "which of the two solutions counts: the smoothest path, the rest position's side, or "
+        "the smaller twist",
+        choices=("viterbi", "default-sign", "smallest-twist"),
+        source=f"{PAPER}, section 4.4, 'a smooth and valid limb trajectory'; Viterbi 1967",
+    )
+    twist_cost: float = setting(
+        0.1, "weight of the squared twist in 'viterbi'", unit="1/rad", low=0.0, high=10.0
+    )
+    unreachable: float = setting(
+        2.0, "a limb farther than this from its reach is flagged", unit="deg", low=0.0, high=90.0
+    )
+    singular: float = setting(
+        5.0, "a limb closer than this to the axes' plane is flagged", unit="deg", low=0.0, high=90.0
+    )
+
+    def __post_init__(self) -> None:
+        check_settings(self)
+
+
+@dataclass(frozen=True)
+class TwistSettings:
+    """How the twist about the limb is found (paper section 4.5)."""
+
+    method: str = setting(
+        "closed-form",
+        "the exact least-squares twist, or the paper's sampling",
+        choices=("closed-form", "sampled"),
+        source=f"{PAPER}, section 4.5 for 'sampled'",
+    )
+    step: float = setting(1.0, "step of 'sampled'", unit="deg", low=0.01, high=30.0)
+
+    def __post_init__(self) -> None:
+        check_settings(self)
+
+
+@dataclass(frozen=True)
+class ParameterizationSettings:
+    """Everything that can be chosen about the parameterization."""
+
+    filter: FilterSettings = field(default_factory=FilterSettings)
+    axes: AxesSettings = field(default_factory=AxesSettings)
+    rest: RestSettings = field(default_factory=RestSettings)
+    angles: AngleSettings = field(default_factory=AngleSettings)
+    twist: TwistSettings = field(default_factory=TwistSettings)
+
+    def as_json(self) -> dict[str, Json]:
+        """Return every setting as ``group.key``, the way the command line addresses it."""
+        return {
+            f"{group.name}.{key}": value
+            for group in fields(self)
+            for key, value in settings_as_json(getattr(self, group.name)).items()
+        }
+
+
+def parse_counts(text: str) -> dict[str, int]:
+    """Return joint → number of axes from ``"left_wrist=1, hip=2"``.
+
+    Raises
+    ------
+    BadSetting
+        If an entry is no ``JOINT=N`` with N from 1 to 3.
+    """
+    counts: dict[str, int] = {}
+    for entry in filter(None, (part.strip() for part in text.split(","))):
+        name, _, number = (part.strip() for part in entry.partition("="))
+        if not name or number not in ("1", "2", "3"):
+            raise BadSetting(f"counts holds {entry!r}; write JOINT=N with N 1, 2 or 3")
+        counts[name] = int(number)
+    return counts

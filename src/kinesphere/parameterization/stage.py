@@ -1,0 +1,228 @@
+"""Poses into joint parameters: axes, rest positions, angles and twist of every joint (paper 4)."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from kinesphere import __version__
+from kinesphere.data import (
+    Array,
+    Codes,
+    Joint,
+    JointFlag,
+    Json,
+    Mask,
+    Motion,
+    Parameters,
+    PoseFlag,
+    Skeleton,
+    Step,
+)
+from kinesphere.errors import BadSetting
+from kinesphere.geometry.chain import joint_rotations
+from kinesphere.parameterization.angles import JointAngles
+from kinesphere.parameterization.joint import JointFit, fit_joint, solve_joint, view_joint
+from kinesphere.parameterization.measures import (
+    lever,
+    mid_point_residuals,
+    number,
+    paper_measures,
+)
+from kinesphere.parameterization.settings import ParameterizationSettings
+
+TORN = 0.02  # m, joints closer together than this are never called dislocated
+OUTLYING = 6.0  # robust standard deviations
+
+
+def parameterize(
+    motion: Motion,
+    settings: ParameterizationSettings | None = None,
+    calibration: tuple[float, float] | None = None,
+    reuse: Skeleton | None = None,
+) -> Parameters:
+    """Describe a normalized motion by angles about the axes the person moves around.
+
+    Sar Dessai, Hornung & Kobbelt 2006, section 4.
+
+    Parameters
+    ----------
+    motion
+        With normalized limb frames.
+    settings
+        Methods and limits of every step; the defaults if None.
+    calibration
+        Start and end in s since the first stored frame: axes and rest positions are taken from
+        there. None takes the whole motion.
+    reuse
+        A parameterized skeleton of the same person; joints of the same name take its axes and rest
+        orientations.
+
+    Returns
+    -------
+    kinesphere.data.Parameters
+        Its skeleton's joints carry axes and rest orientations. Joints whose movement does not tell
+        their axes have those of the body frame and say so (``axes_source``, warnings).
+
+    Raises
+    ------
+    BadSetting
+        If the calibration window holds no frame.
+    """
+    settings = settings or ParameterizationSettings()
+    window = _window(motion, calibration)
+    skeleton = motion.skeleton
+    n, n_joints = motion.n_frames, len(skeleton.joints)
+    angles = np.full((n, n_joints, 3), np.nan)
+    twists, residuals = np.full((n, n_joints), np.nan), np.full((n, n_joints), np.nan)
+    flags = np.zeros((n, n_joints), dtype=np.uint8)
+    moving = np.zeros((n, n_joints), dtype=bool)
+    world = np.array(motion.rotations)  # a twist nobody knows is taken out of it, outward
+    joints: list[Joint] = []
+    findings: dict[str, Json] = {}
+    warnings: list[str] = []
+    for j, joint in enumerate(skeleton.joints):
+        limb, parent = skeleton.limbs[j + 1], skeleton.parents[j + 1]
+        rotations = np.swapaxes(world[:, parent], -1, -2) @ world[:, j + 1]
+        twist_known = motion.flags[:, j + 1] != PoseFlag.TWIST_UNKNOWN
+        view = view_joint(
+            joint.name, rotations, limb.long_axis, twist_known, motion.rate, window, settings
+        )
+        fit = _reused(joint.name, reuse) or fit_joint(view, settings)
+        solved = solve_joint(view, fit.axes, fit.rest, settings)
+        rebuilt = joint_rotations(fit.axes, fit.rest, limb.long_axis, solved.angles, solved.twists)
+        mid_point = lever(joint.centre_in_child, limb.length, limb.long_axis)
+        angles[:, j], twists[:, j] = solved.angles, solved.twists
+        residuals[:, j] = mid_point_residuals(rotations, rebuilt, mid_point)
+        moving[:, j] = view.movement.moving
+        flags[:, j] = _flags(motion, j, solved, fit, settings)
+        unknown = ~twist_known & np.isfinite(rebuilt[:, 0, 0])
+        world[unknown, j + 1] = world[unknown, parent] @ rebuilt[unknown]
+        joints.append(
+            replace(
+                joint,
+                axes=fit.axes,
+                rest=fit.rest,
+                axes_source=fit.source,
+                axes_uncertainty=fit.uncertainty,
+            )
+        )
+        warnings += fit.warnings
+        findings[joint.name] = {
+            **fit.findings,
+            "moving_s": float(view.movement.moving.sum() / motion.rate),
+            "phases_s": [[a / motion.rate, b / motion.rate] for a, b in view.samples.phases],
+            "threshold_deg_s": float(np.rad2deg(view.movement.threshold)),
+            "threshold_from_valley": view.movement.valley,
+            **_result_findings(residuals[:, j], solved, flags[:, j]),
+            **paper_measures(rotations, rebuilt, limb.long_axis, mid_point),
+        }
+    if reuse is not None and not set(reuse.joint_names) & set(skeleton.joint_names):
+        warnings.append("the solution whose axes were to be reused has no joint of the same name")
+    step = Step(
+        "parameterization",
+        {
+            **settings.as_json(),
+            "calibration_s": None if calibration is None else list(calibration),
+            "reuse": reuse is not None,
+        },
+        {"joints": findings},
+        tuple(warnings),
+        __version__,
+    )
+    return Parameters(
+        skeleton=replace(skeleton, joints=tuple(joints), history=(*motion.history, step)),
+        root_positions=motion.origins[:, 0],
+        root_rotations=motion.rotations[:, 0],
+        angles=angles,
+        twists=twists,
+        residuals=residuals,
+        flags=flags,
+        moving=moving,
+        rate=motion.rate,
+        first_frame=motion.first_frame,
+        history=(*motion.history, step),
+    )
+
+
+def _window(motion: Motion, calibration: tuple[float, float] | None) -> Mask:
+    """Return which frames lie in the calibration window, (n_frames,)."""
+    if calibration is None:
+        return np.ones(motion.n_frames, dtype=bool)
+    start, end = calibration
+    window = np.asarray((motion.times >= start) & (motion.times <= end))
+    if not window.any():
+        last = motion.times[-1] if motion.n_frames else 0.0
+        raise BadSetting(
+            f"calibration is {start}–{end} s; the recording runs from 0 to {last:.2f} s"
+        )
+    return window
+
+
+def _reused(name: str, reuse: Skeleton | None) -> JointFit | None:
+    """Return the joint's axes from another solution; None if it has none of that name."""
+    if reuse is None or name not in reuse.joint_names:
+        return None
+    joint = reuse.joint(name)
+    if joint.axes is None or joint.rest is None:
+        return None
+    unknown = np.full(joint.n_axes, np.nan)
+    uncertainty = unknown if joint.axes_uncertainty is None else joint.axes_uncertainty
+    findings: dict[str, Json] = {"n_axes": joint.n_axes, "axes_source": "reused"}
+    return JointFit(joint.axes, joint.rest, "reused", uncertainty, findings, ())
+
+
+def _flags(
+    motion: Motion,
+    j: int,
+    solved: JointAngles,
+    fit: JointFit,
+    settings: ParameterizationSettings,
+) -> Codes:
+    """Return the JointFlags of joint ``j``, (n_frames,) uint8."""
+    limbs = [int(motion.skeleton.parents[j + 1]), j + 1]
+    unseen = np.isnan(solved.angles[:, 0])
+    flags = np.where(unseen, JointFlag.UNSEEN, 0)
+    with np.errstate(invalid="ignore"):
+        far = solved.excess > np.deg2rad(settings.angles.unreachable)
+        edge = solved.sines < np.sin(np.deg2rad(settings.angles.singular))
+    flags |= np.where(far, JointFlag.UNREACHABLE, 0)
+    if len(fit.axes) > 1:
+        flags |= np.where(edge, JointFlag.SINGULAR, 0)
+    pose = motion.flags[:, limbs]
+    flags |= np.where(~unseen & (pose[:, 1] == PoseFlag.TWIST_UNKNOWN), JointFlag.TWIST_UNKNOWN, 0)
+    flags |= np.where(~unseen & (pose == PoseFlag.FILLED).any(axis=1), JointFlag.FILLED, 0)
+    flags |= np.where(_torn(motion, j), JointFlag.DISLOCATED, 0)
+    return flags.astype(np.uint8)
+
+
+def _torn(motion: Motion, j: int) -> Mask:
+    """Return where parent and child disagree about the joint far more than usual, (n_frames,)."""
+    joint, parent = motion.skeleton.joints[j], motion.skeleton.parents[j + 1]
+    by_parent = motion.rotations[:, parent] @ joint.centre_in_parent + motion.origins[:, parent]
+    by_child = motion.rotations[:, j + 1] @ joint.centre_in_child + motion.origins[:, j + 1]
+    apart = np.linalg.norm(by_parent - by_child, axis=1)
+    known: Mask = np.isfinite(apart)
+    if not known.any():
+        return known
+    usual = float(np.median(apart[known]))
+    spread = 1.4826 * float(np.median(np.abs(apart[known] - usual)))
+    with np.errstate(invalid="ignore"):
+        return np.asarray(apart > usual + max(OUTLYING * spread, TORN))
+
+
+def _result_findings(residuals: Array, solved: JointAngles, flags: Codes) -> dict[str, Json]:
+    known = residuals * 1e3
+    seen = (flags & JointFlag.UNSEEN) == 0
+
+    def share(flag: JointFlag) -> float | None:
+        return float(((flags[seen] & flag) > 0).mean()) if seen.any() else None
+
+    return {
+        "seen": float(seen.mean()) if len(seen) else None,
+        "residual_mean_mm": number(known, np.mean),
+        "residual_median_mm": number(known, np.median),
+        "residual_95_mm": number(known, lambda v: np.percentile(v, 95)),
+        "twist_rms_deg": number(np.rad2deg(solved.twists) ** 2, lambda v: np.sqrt(v.mean())),
+        "unreachable": share(JointFlag.UNREACHABLE),
+        "singular": share(JointFlag.SINGULAR),
+    }
