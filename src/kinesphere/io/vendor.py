@@ -29,10 +29,11 @@ _ENDING = re.compile(rf"[A-Za-z0-9]({'|'.join(sorted(_SUFFIXES, key=len, reverse
 _CENTRE_OF_MASS = re.compile(r"^Cent(re|er)OfMass", re.IGNORECASE)
 _FRAME_ENDS = ("O", "A", "L", "P")
 """Plug-in Gait's segment frames: origin, and points along the anterior, left and third axis."""
-_LONGEST_SPREAD = 0.01
-"""Share of their length by which the edges of a segment frame may vary: it is computed."""
-_SQUARE = 0.02
-"""Largest |cosine| between two axes of a segment frame, which are square but for rounding."""
+_EQUAL = 0.01
+"""Share by which the axes of a segment frame differ in length at one instant (measured: 0.0003)."""
+_SQUARE = 0.15
+"""Largest |cosine| between two of them (measured: 1e-6, the feet of one old file 0.09). Their
+length itself varies, by up to 30 % over a trial: it is the bone's, measured in every frame."""
 
 
 def kind_of_type(type_name: str) -> OutputKind:
@@ -79,13 +80,15 @@ def _segment_frame_points(labels: Sequence[str], points: Array) -> set[str]:
         stem = label[:-1].rpartition(":")[2]
         if not label.endswith(_FRAME_ENDS[0]) or not stem or not all(n in column for n in names):
             continue
-        if _is_square_and_rigid(points[:, [column[name] for name in names]]):
+        if _is_cross(points[:, [column[name] for name in names]]):
             found.update(names)
     return found
 
 
-def _is_square_and_rigid(quadruple: Array) -> bool:
+def _is_cross(quadruple: Array) -> bool:
     """Tell a computed frame from four markers that happen to bear such names.
+
+    A computed frame has three axes of one length, square to each other; markers on a limb do not.
 
     Parameters
     ----------
@@ -97,12 +100,10 @@ def _is_square_and_rigid(quadruple: Array) -> bool:
         return True
     axes = seen[:, 1:] - seen[:, :1]
     lengths = np.linalg.norm(axes, axis=2)
-    if not (lengths > 0).all():
+    shortest = lengths.min(axis=1)
+    if np.median(lengths.max(axis=1) - shortest) > _EQUAL * np.median(shortest):
         return False
-    if (lengths.std(axis=0) > _LONGEST_SPREAD * lengths.mean(axis=0)).any():
-        return False
-    units = axes / lengths[..., None]
-    cosines = [
-        np.abs((units[:, i] * units[:, j]).sum(axis=1)) for i, j in combinations(range(3), 2)
-    ]
-    return bool(np.median(cosines, axis=1).max() < _SQUARE)
+    dots = [(axes[:, i] * axes[:, j]).sum(axis=1) for i, j in combinations(range(3), 2)]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        cosines = np.abs(dots) / shortest**2
+    return bool((np.median(cosines, axis=1) < _SQUARE).all())
