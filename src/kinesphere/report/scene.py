@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from kinesphere.data import Array, JointFlag, PoseFlag, Skeleton, Solution
+from kinesphere.data import Array, Codes, JointFlag, Mask, Skeleton, Solution
 from kinesphere.report.packing import pack
 
 SCREEN_RATE = 60.0
@@ -55,26 +55,23 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
             "joint_residuals": pack(parameters.residuals[shown] * 1e3, _RESIDUAL_STEP),
             "limb_residuals": pack(motion.residuals[shown] * 1e3, _RESIDUAL_STEP),
         },
-        "moving": [runs(parameters.moving[shown, j]) for j in range(parameters.moving.shape[1])],
-        "flags": [
-            {
-                flag.name.lower(): runs((parameters.flags[shown, j] & flag) > 0)
-                for flag in JointFlag
-                if flag.name and (parameters.flags[shown, j] & flag).any()
-            }
-            for j in range(parameters.flags.shape[1])
-        ],
-        "unmeasured": [
-            runs(~np.isin(motion.flags[shown, i], (PoseFlag.MEASURED, PoseFlag.JOINT_AIDED)))
-            for i in range(motion.flags.shape[1])
-        ],
+        "moving": [runs(column) for column in parameters.moving[shown].T],
+        "flags": [_flag_runs(column) for column in parameters.flags[shown].T],
     }
 
 
-def runs(mask: Array | np.ndarray[Any, Any]) -> list[list[int]]:
+def runs(mask: Mask) -> list[list[int]]:
     """Return [first, end) of every stretch of True in a mask (n_frames,)."""
     edges = np.flatnonzero(np.diff(np.r_[False, np.asarray(mask, dtype=bool), False].astype(int)))
     return [[int(a), int(b)] for a, b in edges.reshape(-1, 2)]
+
+
+def _flag_runs(flags: Codes) -> dict[str, list[list[int]]]:
+    return {
+        str(flag.name).lower(): runs(np.asarray((flags & flag) > 0))
+        for flag in JointFlag
+        if (flags & flag).any()
+    }
 
 
 def _shown_markers(solution: Solution) -> list[int]:

@@ -1,5 +1,4 @@
-"""Findings in words: names without underscores, numbers with their unit and no more digits
-than mean something."""
+"""Findings in words: no underscores, numbers with their unit and no digits that mean nothing."""
 
 import math
 

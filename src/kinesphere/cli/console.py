@@ -1,0 +1,113 @@
+"""How the command line speaks: tables on stdout, progress and errors on stderr, JSON alone."""
+
+import json
+import sys
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+_WIDTH = 110
+"""Columns where stdout is no terminal: wide enough for every table."""
+
+
+def stdout() -> Console:
+    """Return the console for results."""
+    width = None if sys.stdout.isatty() else _WIDTH
+    return Console(file=sys.stdout, highlight=False, markup=False, width=width)
+
+
+def stderr() -> Console:
+    """Return the console for progress, warnings and errors."""
+    return Console(file=sys.stderr, highlight=False, markup=False)
+
+
+def plain(text: object) -> str:
+    """Return text from a file without the characters that could steer a terminal."""
+    return "".join(c if c.isprintable() else "�" for c in str(text))
+
+
+def on_one_line(text: str) -> str:
+    """Return a message as a single printable line."""
+    return plain(" ".join(text.split()))
+
+
+def print_json(found: Any) -> None:
+    """Print what a machine reads: one JSON object, NaN as null."""
+    sys.stdout.write(json.dumps(found, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+
+
+def print_title(console: Console, title: str, aside: str = "") -> None:
+    """Print the line above a table."""
+    line = Text(plain(title), style="bold")
+    if aside:
+        line.append(f"  {plain(aside)}", style="not bold dim")
+    console.print()
+    console.print(line)
+
+
+def print_pairs(console: Console, pairs: Iterable[tuple[str, str]]) -> None:
+    """Print names and what was found, one pair a line."""
+    table = Table(box=None, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
+    table.add_column(style="dim", no_wrap=True)
+    table.add_column(overflow="fold")
+    for name, found in pairs:
+        table.add_row(Text(plain(name)), Text(plain(found)))
+    console.print(table)
+
+
+def print_table(
+    console: Console, header: Sequence[str], rows: Iterable[Sequence[str]], right: str = ""
+) -> None:
+    """Print a table; ``right`` has an ``r`` at each column of numbers, e.g. ``"lrr"``."""
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1), pad_edge=False, header_style="dim")
+    for i, name in enumerate(header):
+        justify: Any = "right" if right[i : i + 1] == "r" else "left"
+        table.add_column(Text(name), justify=justify, overflow="fold")
+    for row in rows:
+        table.add_row(*(Text(plain(cell)) for cell in row))
+    console.print(table)
+
+
+def print_warnings(console: Console, warnings: Sequence[str]) -> None:
+    """Print what a person should not miss."""
+    for warning in warnings:
+        line = Text("! ", style="bold yellow")
+        line.append(plain(warning), style="not bold yellow")
+        console.print(line)
+
+
+def _silent(stage: str, done: int, total: int) -> None:
+    """Draw nothing."""
+
+
+@contextmanager
+def progress_bar(*, quiet: bool) -> Iterator[Callable[[str, int, int], None]]:
+    """Yield a function ``(stage, done, total)`` that draws a bar on stderr while work goes on.
+
+    Nothing is drawn when ``quiet``, or where stderr is no terminal.
+    """
+    console = stderr()
+    if quiet or not console.is_terminal:
+        yield _silent
+        return
+    bar = Progress(
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=30),
+        TimeElapsedColumn(),
+        console=console,
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task("reading")
+
+        def advance(stage: str, done: int, total: int) -> None:
+            bar.update(task, description=stage, completed=done, total=total)
+
+        yield advance

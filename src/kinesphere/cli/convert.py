@@ -1,0 +1,35 @@
+"""``kinesphere convert``: any readable format to any writable one."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kinesphere.cli.options import JsonOption
+
+
+def convert(
+    source: Annotated[Path, typer.Argument(metavar="IN", help="Any readable file or folder.")],
+    target: Annotated[Path, typer.Argument(metavar="OUT", help="Its suffix says the format.")],
+    as_json: JsonOption = False,
+) -> None:
+    """Turn a file into another format, losslessly where both can hold what is in it.
+
+    A recording goes to [bold].c3d[/bold], [bold].trc[/bold] or [bold].csv[/bold]; a solved folder
+    also to [bold].bvh[/bold].
+
+    Example: [bold]kinesphere convert walk.c3d walk.trc[/bold]
+    """
+    from kinesphere.cli.console import print_json, print_warnings, stdout
+    from kinesphere.io import read, write
+
+    found = read(source)
+    write(found, target)
+    warnings = [warning for step in getattr(found, "history", ()) for warning in step.warnings]
+    size = target.stat().st_size if target.is_file() else None
+    if as_json:
+        print_json({"in": str(source), "out": str(target), "bytes": size, "warnings": warnings})
+        return
+    console = stdout()
+    console.print(f"{source} → {target}" + (f" ({size:,} bytes)" if size else ""), soft_wrap=True)
+    print_warnings(console, warnings)

@@ -1,0 +1,162 @@
+"""A solution or a model in figures, for machines and for people."""
+
+from typing import Any
+
+from kinesphere.cli.console import (
+    print_pairs,
+    print_table,
+    print_title,
+    print_warnings,
+    stdout,
+)
+from kinesphere.data import Solution, TopologicalModel
+from kinesphere.report import finding_in_words, number_in_words
+from kinesphere.report.tables import joint_rows, rms, unique
+
+_SHOWN = {
+    "read": ("format", "unit", "n_frames", "rate_hz"),
+    "labelling": ("subject", "required_found", "required", "missing", "extra"),
+    "orientation": ("up", "up_from", "mirrored"),
+}
+"""Findings worth a line in the terminal; of other stages, every number and name."""
+
+
+def describe_solution(solution: Solution) -> dict[str, Any]:
+    """Return what was found stage by stage: units in the names, everything JSON can hold."""
+    motion, parameters = solution.motion, solution.parameters
+    return {
+        "kind": "solution",
+        "model": solution.model_name,
+        "n_frames": motion.n_frames,
+        "rate_hz": motion.rate,
+        "limbs": list(solution.skeleton.limb_names),
+        "limb_residual_rms_mm": _number(rms(motion.residuals) * 1e3),
+        "rebuilt_residual_rms_mm": _number(rms(parameters.residuals) * 1e3),
+        "seen": float(motion.seen.mean()),
+        "joints": [
+            {
+                "name": joint.name,
+                "residual_mm": _number(joint.residual * 1e3),
+                "range_of_motion_deg": _number(joint.range_of_motion * 57.29577951308232),
+                "observability": joint.observability,
+                "n_axes": joint.n_axes,
+                "axes_from": joint.axes_source,
+                "note": joint.note,
+            }
+            for joint in solution.skeleton.joints
+        ],
+        "stages": [
+            {
+                "name": step.name,
+                "seconds": solution.seconds.get(step.name),
+                "findings": dict(step.findings),
+                "warnings": list(step.warnings),
+            }
+            for step in solution.history
+        ],
+        "warnings": unique(solution.warnings),
+        "rows": [
+            (
+                row.name,
+                row.residual,
+                row.range_of_motion,
+                row.observability,
+                row.axes,
+                " | ".join(angle for angle in row.angles[: row.n_axes]),
+                row.angles[-1],
+            )
+            for row in joint_rows(solution)
+        ],
+    }
+
+
+def show_solution(summary: dict[str, Any]) -> None:
+    """Print the summary as tables."""
+    console = stdout()
+    seconds = summary["n_frames"] / summary["rate_hz"]
+    print_title(
+        console,
+        summary["file"],
+        f"model {summary['model']}, {len(summary['limbs'])} limbs, {summary['n_frames']:,} frames, "
+        f"{seconds:.2f} s",
+    )
+    for stage in summary["stages"]:
+        took = "" if stage["seconds"] is None else number_in_words(stage["seconds"], "s")
+        print_title(console, stage["name"], took)
+        print_pairs(console, _short(stage))
+    print_title(console, "Joints")
+    print_table(
+        console,
+        ("joint", "residual", "range", "centre", "axes", "angles 5–95 %", "twist"),
+        summary["rows"],
+        "lrrllrr",
+    )
+    pairs = [
+        ("limb fit", f"{number_in_words(summary['limb_residual_rms_mm'], 'mm')} rms"),
+        ("rebuilt", f"{number_in_words(summary['rebuilt_residual_rms_mm'], 'mm')} rms"),
+        ("seen", f"{summary['seen']:.1%} of all limb poses"),
+    ]
+    print_pairs(console, pairs)
+    if summary["warnings"]:
+        print_title(console, "Warnings")
+        print_warnings(console, summary["warnings"])
+
+
+def describe_model(model: TopologicalModel) -> dict[str, Any]:
+    """Return what a topological model holds."""
+    return {
+        "kind": "model",
+        "name": model.name,
+        "description": model.description,
+        "root": model.root,
+        "segments": [
+            {"name": s.name, "markers": list(s.markers), "shared": list(s.shared)}
+            for s in model.segments
+        ],
+        "joints": [
+            {"name": j.name, "parent": j.parent, "child": j.child, "n_axes": j.n_axes}
+            for j in model.joints
+        ],
+        "required": list(model.required),
+        "learnt_from": [statistics.recording for statistics in model.statistics],
+    }
+
+
+def show_model(summary: dict[str, Any]) -> None:
+    """Print the model as a table."""
+    console = stdout()
+    n_markers = sum(len(segment["markers"]) for segment in summary["segments"])
+    print_title(
+        console,
+        summary["name"],
+        f"{len(summary['segments'])} segments, {n_markers} markers, root {summary['root']}",
+    )
+    if summary["description"]:
+        print_pairs(console, [("", summary["description"])])
+    joints = {joint["child"]: joint for joint in summary["joints"]}
+    rows = []
+    for segment in summary["segments"]:
+        joint = joints.get(segment["name"])
+        rows.append(
+            (
+                segment["name"],
+                f"{joint['name']} to {joint['parent']}" if joint else "root",
+                ", ".join(segment["markers"]) or "–",
+                ", ".join(segment["shared"]),
+            )
+        )
+    print_table(console, ("segment", "joint", "markers", "shared"), rows)
+
+
+def _short(stage: dict[str, Any]) -> list[tuple[str, str]]:
+    findings = stage["findings"]
+    names = _SHOWN.get(stage["name"])
+    if names is None:
+        names = tuple(k for k, v in findings.items() if isinstance(v, int | float | str))
+    return [
+        finding_in_words(k, findings[k]) for k in names if findings.get(k) not in (None, [], "")
+    ]
+
+
+def _number(value: float) -> float | None:
+    return round(float(value), 6) if value == value else None

@@ -1,0 +1,36 @@
+"""What commands read and write, with an error that names what was expected."""
+
+from pathlib import Path
+
+from kinesphere.cli.options import BadArgument
+from kinesphere.data import Recording, Solution
+from kinesphere.io import read, replacing, write_solution
+from kinesphere.report import report_html
+
+
+def read_recording(path: Path) -> Recording:
+    """Return the recording in a file; BadArgument for a solution, a model or anything else."""
+    found = read(path)
+    if isinstance(found, Solution):
+        raise BadArgument(f"{path} is solved already; name the recording it was made from")
+    if not isinstance(found, Recording):
+        raise BadArgument(f"{path} holds a {type(found).__name__}; a recording is wanted")
+    return found
+
+
+def read_solved(path: Path) -> Solution:
+    """Return the solution in a folder; BadArgument for anything else."""
+    found = read(path)
+    if not isinstance(found, Solution):
+        raise BadArgument(f"{path} holds a {type(found).__name__}; a solved folder is wanted")
+    return found
+
+
+def write_solved(solution: Solution, directory: Path, title: str) -> Path:
+    """Write a solved folder with its report; return where the report is."""
+    html = report_html(solution, title)
+    write_solution(solution, directory)
+    report = directory / "report.html"
+    with replacing(report) as beside:
+        beside.write_text(html, encoding="utf-8")
+    return report

@@ -1,0 +1,48 @@
+"""``kinesphere info``: what is in a file, and what is wrong with it."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kinesphere.cli.options import BadArgument, JsonOption, SubjectOption
+
+
+def info(
+    file: Annotated[
+        Path,
+        typer.Argument(help="A recording (C3D, TRC), a solved folder or a model.", metavar="FILE"),
+    ],
+    subject: SubjectOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Tell what is in a file, and what is wrong with it.
+
+    Example: [bold]kinesphere info walk.c3d[/bold]
+    """
+    from kinesphere.cli.console import print_json
+    from kinesphere.cli.describe_recording import describe_recording, show_recording
+    from kinesphere.cli.describe_solution import (
+        describe_model,
+        describe_solution,
+        show_model,
+        show_solution,
+    )
+    from kinesphere.data import Recording, Solution, TopologicalModel
+    from kinesphere.io import read
+
+    found = read(file)
+    if isinstance(found, Recording):
+        summary = describe_recording(found, subject)
+        show = show_recording
+    elif isinstance(found, Solution):
+        summary, show = describe_solution(found), show_solution
+    elif isinstance(found, TopologicalModel):
+        summary, show = describe_model(found), show_model
+    else:
+        raise BadArgument(f"{file} holds a {type(found).__name__}, which info cannot describe")
+    summary = {"file": str(file), **summary}
+    if as_json:
+        print_json(summary)
+    else:
+        show(summary)

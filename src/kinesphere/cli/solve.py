@@ -1,0 +1,112 @@
+"""``kinesphere solve``: the whole line on one recording."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from kinesphere.cli.options import (
+    BadArgument,
+    JsonOption,
+    SetOption,
+    SettingsOption,
+    SubjectOption,
+    calibration_from_text,
+    settings_from_options,
+)
+
+if TYPE_CHECKING:
+    from kinesphere.data import TopologicalModel
+
+
+def solve(
+    file: Annotated[Path, typer.Argument(help="A labelled recording.", metavar="FILE")],
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", metavar="DIR", help="Folder for everything that is found."),
+    ],
+    model: Annotated[
+        str | None,
+        typer.Option(
+            "--model",
+            metavar="MODEL",
+            help="A model file or the name of a built-in one; without it, the built-in one that "
+            "the labels cover.",
+        ),
+    ] = None,
+    subject: SubjectOption = None,
+    calibration: Annotated[
+        str | None,
+        typer.Option(
+            "--calibration",
+            metavar="START:END",
+            help="Where the main movements are made, in seconds from the first stored frame.",
+        ),
+    ] = None,
+    calibration_from: Annotated[
+        Path | None,
+        typer.Option(
+            "--calibration-from",
+            metavar="DIR",
+            help="Take axes and rest positions from a solved recording of the same person.",
+        ),
+    ] = None,
+    assignments: SetOption = None,
+    settings_file: SettingsOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Find skeleton, motion and joint parameters of a labelled recording.
+
+    Example: [bold]kinesphere solve walk.c3d --calibration 0:60 -o walk[/bold]
+    """
+    if calibration is not None and calibration_from is not None:
+        raise BadArgument("--calibration and --calibration-from exclude each other; give one")
+    span = calibration_from_text(calibration)
+
+    from kinesphere import pipeline
+    from kinesphere.cli.console import print_json, progress_bar, stdout
+    from kinesphere.cli.describe_solution import describe_solution, show_solution
+    from kinesphere.cli.files import read_recording, read_solved, write_solved
+
+    settings = settings_from_options(assignments, settings_file)
+    with progress_bar(quiet=as_json) as progress:
+        recording = read_recording(file)
+        solution = pipeline.solve(
+            recording,
+            model_from_text(model),
+            subject=subject,
+            calibration=span,
+            calibration_from=read_solved(calibration_from) if calibration_from else None,
+            settings=settings,
+            progress=progress,
+        )
+        progress("writing", len(pipeline.STAGES), len(pipeline.STAGES) + 1)
+        report = write_solved(solution, output, file.name)
+    summary = {"file": str(file), "output": str(output), **describe_solution(solution)}
+    if as_json:
+        print_json(summary)
+        return
+    show_solution(summary)
+    stdout().print(f"\nReport: {report}", soft_wrap=True)
+
+
+def model_from_text(text: str | None) -> "TopologicalModel | str | None":
+    """Return the model in a file, or the name of a built-in one as it is."""
+    if text is None:
+        return None
+    from kinesphere.data import TopologicalModel
+    from kinesphere.io import read
+    from kinesphere.labelling import built_in_models
+    from kinesphere.pipeline import MOTION_ALONE
+
+    if text == MOTION_ALONE or (text in built_in_models() and not Path(text).exists()):
+        return text
+    if not Path(text).exists():
+        raise BadArgument(
+            f"--model {text}: neither a file nor a built-in model; built in are "
+            f"{', '.join(built_in_models())}"
+        )
+    found = read(text)
+    if not isinstance(found, TopologicalModel):
+        raise BadArgument(f"--model {text} holds a {type(found).__name__}, not a model")
+    return found

@@ -1,1 +1,0 @@
-"""The order of things: the one place that knows it."""
