@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from kinesphere.data import Array, Mask, PoseFlag
+from kinesphere.data import Array, Codes, Mask, PoseFlag
 from kinesphere.normalization.anatomy import Anatomy
 from kinesphere.normalization.averaging import robust_mean_rotations
 from kinesphere.normalization.limb_frames import canonical_direction, minimal_frame, paper_frame
@@ -53,15 +53,15 @@ def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Ali
     n_limbs = len(anatomy.skeleton.limbs)
     found = Alignment(np.tile(np.eye(3), (n_limbs, 1, 1)), np.full((n_limbs, 3), np.nan))
     seen = np.asarray(np.isfinite(samples.rotations).all(axis=(2, 3)))
-    flags = samples.motion.flags[samples.frames]
+    sure = twist_told(samples.motion.flags)
     for limb, name in enumerate(anatomy.skeleton.limb_names):
         usable = chosen & seen[:, limb]
-        twist_known = usable & (flags[:, limb] != PoseFlag.TWIST_UNKNOWN)
+        twist_known = usable & sure[samples.frames, limb]
         base_from_limb = None
         if twist_known.any():
             base_from_limb = _mean_pose(bodies[twist_known], samples.rotations[twist_known, limb])
         elif limb > 0:
-            base_from_limb = _pose_at_parent(samples, limb, found.turns)
+            base_from_limb = _pose_at_parent(samples, limb, found.turns, sure[:, limb])
             if base_from_limb is not None:
                 found.elsewhere.append(name)
         if base_from_limb is None and usable.any():
@@ -75,6 +75,17 @@ def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Ali
         found.turns[limb] = base_from_limb.T @ base_from_new
         found.off_ideal[name] = off
     return found
+
+
+def twist_told(flags: Codes) -> Mask:
+    """Return where a limb's twist is more than a guess, (n_frames, n_limbs) of PoseFlag → bool.
+
+    A filled pose of a limb whose twist is a guess in other frames is one, too.
+    """
+    guessed = flags == PoseFlag.TWIST_UNKNOWN
+    filled = flags == PoseFlag.FILLED
+    unseen = flags == PoseFlag.UNSEEN
+    return np.asarray(~(guessed | unseen | (filled & guessed.any(axis=0))))
 
 
 def _frame(
@@ -98,7 +109,7 @@ def _mean_pose(bases: Array, rotations: Array) -> Array:
     return np.asarray(robust_mean_rotations(base_from_limb[:, None])[0])
 
 
-def _pose_at_parent(samples: Samples, limb: int, turns: Array) -> Array | None:
+def _pose_at_parent(samples: Samples, limb: int, turns: Array, sure: Mask) -> Array | None:
     """Return a limb's mean pose in its parent's new frame, where the default pose shows too little.
 
     Over the frames of the whole recording in which the limb points most nearly as it should; None
@@ -107,8 +118,7 @@ def _pose_at_parent(samples: Samples, limb: int, turns: Array) -> Array | None:
     anatomy, motion = samples.anatomy, samples.motion
     parent = int(anatomy.skeleton.parents[limb])
     rotations = motion.rotations[:, [parent, limb]]
-    usable = np.isfinite(rotations).all(axis=(1, 2, 3))
-    usable &= motion.flags[:, limb] != PoseFlag.TWIST_UNKNOWN
+    usable = sure & np.isfinite(rotations).all(axis=(1, 2, 3))
     if not usable.any():
         return None
     parents, limbs = rotations[usable, 0] @ turns[parent], rotations[usable, 1]

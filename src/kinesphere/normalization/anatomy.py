@@ -103,7 +103,7 @@ class Anatomy:
         """(n_limbs, 3) unit vectors along each limb, proximal to distal; NaN where unknown.
 
         From joint to joint; along the principal direction of the joints where a limb carries
-        several. At the end of a chain: of the head from the neck to the middle of its markers, which
+        several. At the end of a chain: of a head from the neck to the middle of its markers, which
         sit around it; else the long axis that the skeleton measured, or from the joint to the
         middle of the markers, or where these spread most. The limbs that get the body frame have
         none.

@@ -13,6 +13,7 @@ from kinesphere.normalization.settings import NormalizationSettings
 UP = np.array([0.0, 1.0, 0.0])
 """The world's up (docs/conventions.md)."""
 
+_FAST = 4.0  # most that speed may cost: whoever never stands still is judged by posture
 _T_RATIO = 0.85  # height over arm span between the outermost joints of a T-pose (wrists, ankles)
 
 
@@ -49,7 +50,8 @@ def posture_cost(samples: Samples, settings: NormalizationSettings) -> PositionC
     cost = np.zeros(len(samples.frames))
     for name, angle in angles.items():
         cost += _term(angle, scales[name])
-    cost += _term(plane / span, settings.plane_distance) + _term(speed / span, settings.speed)
+    cost += _term(plane / span, settings.plane_distance)
+    cost += np.minimum(_term(speed / span, settings.speed), _FAST)
     terms = {**angles, "plane_distance_mm": 1e3 * plane, "speed_mm_per_s": 1e3 * speed}
     return PositionCost(_smooth(cost, samples, settings), terms, settings.posture_margin)
 

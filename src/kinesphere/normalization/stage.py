@@ -25,6 +25,7 @@ from kinesphere.normalization.samples import Samples, take_samples
 from kinesphere.normalization.settings import NormalizationSettings
 
 _DEFAULTS = NormalizationSettings()
+_SHARE = 0.1  # of the best cost; where nothing is good, differences are worth less
 _WIDE = np.deg2rad(10.0)  # spread of the body frames from which the average is in doubt
 
 
@@ -69,7 +70,7 @@ def normalize(
     best = int(np.argmin(cost))
     chosen = np.arange(len(cost)) == best
     if settings.frames == "many" and not proposal.only_best:
-        chosen = cost <= cost[best] + position.margin
+        chosen = cost <= cost[best] + position.margin + _SHARE * abs(cost[best])
     in_root = proposal.root_from_body
     mean_body = robust_mean_rotations(in_root[chosen][:, None])[0]
     carried = samples.rotations[:, 0] @ mean_body
@@ -148,11 +149,6 @@ def _warnings(
             f"the default position does not fully show {', '.join(alignment.elsewhere)}; aligned "
             "with the limb before it, in the frames that show both"
         )
-    if alignment.twistless:
-        said.append(
-            f"no frame tells the twist of {', '.join(alignment.twistless)}; "
-            "it counts as none in the default position"
-        )
     if alignment.never:
         said.append(f"{', '.join(alignment.never)} could not be aligned and keeps its frame")
     return tuple(said)
@@ -181,6 +177,7 @@ def _findings(
         "spread_rms_deg": float(np.rad2deg(np.sqrt(np.mean(spread**2)))),
         "spread_max_deg": float(np.rad2deg(spread.max())),
         "facing": verdict.as_json(),
+        "limbs_without_twist": list(alignment.twistless),
         "limbs_off_ideal_deg": {n: float(np.rad2deg(a)) for n, a in alignment.off_ideal.items()},
     }
 
