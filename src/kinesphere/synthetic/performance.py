@@ -205,8 +205,8 @@ def _on_the_floor(
 
 def _root_rotations(rng: np.random.Generator, course: Course, times: Array) -> Array:
     """Draw a heading that wanders in free motion, and a tilt that is sway before and play after."""
-    heading = rng.uniform(-np.pi, np.pi) + 1.5 * course.free * smooth_noise(
-        rng, times, (), 0.02, 0.08
+    heading = rng.uniform(-np.pi, np.pi) + 1.5 * _wander(
+        smooth_noise(rng, times, (), 0.02, 0.08), course.free
     )
     tilt = np.deg2rad(0.2 + 5 * course.free)[:, None] * smooth_noise(rng, times, (2,), 0.1, 0.4)
     x, y, z = np.eye(3)
@@ -220,7 +220,7 @@ def _root_positions(
 ) -> Array:
     """Let the root roam over the floor, at the height that keeps the lowest foot on it."""
     positions = np.empty((len(times), 3))
-    roam = _ROAM_M * course.free[:, None] * smooth_noise(rng, times, (2,), 0.01, 0.06)
+    roam = _ROAM_M * _wander(smooth_noise(rng, times, (2,), 0.01, 0.06), course.free)
     sway = _SWAY_M * smooth_noise(rng, times, (2,), 0.1, 0.5)
     positions[:, [0, 2]] = rng.uniform(-1, 1, 2) + roam + sway
     feet = [hovering.skeleton.limb_names.index(name) for name in actor.plan.stands_on]
@@ -238,6 +238,12 @@ def _root_positions(
     lowest = deep - _FLOOR_M * np.log(softly / len(feet))
     positions[:, 1] = actor.plan.sole * actor.size - lowest
     return positions
+
+
+def _wander(noise: Array, free: Array) -> Array:
+    """Return noise that starts from zero, smoothly, where free motion does."""
+    start = int(np.argmax(free > 0))
+    return np.asarray(((noise - noise[start]).T * free).T)
 
 
 def _range_of_motion(relative: Array) -> float:
