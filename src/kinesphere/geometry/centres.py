@@ -1,44 +1,44 @@
-"""The point two limbs share: algebraic estimates, and the robust one that knows what it knows."""
+"""The point two limbs share, by maximum a posteriori, and how well the motion knows it."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinesphere.geometry.rigid import point_covariance
+
 Array = NDArray[np.float64]
 
 NOISE_FLOOR = 1e-6
-"""m, least noise ever assumed: keeps weights finite on noise-free data."""
+"""Least scale of the residuals relative to the noise they are expected to have."""
 CELL = np.deg2rad(10.0)
 """rad, poses nearer to each other than this count as one: soft tissue errs alike in both."""
+_DIFFERENCE = 1e-6  # m, step of the variance's derivative, which is a quadratic: nearly exact
 
 
 @dataclass(frozen=True)
-class PairView:
-    """What one limb's motion in another's frame looks like, for the centre they share."""
+class View:
+    """Markers of one limb as another limb sees them, and how noisy that is."""
 
-    child_in_parent: Array
-    """(n_frames, n_child_markers, 3) m, the child's markers seen from the parent."""
-    parent_in_child: Array | None = None
-    """(n_frames, n_parent_markers, 3) m, the parent's markers seen from the child."""
-    rotations: Array | None = None
-    """(n_frames, 3, 3) ``parent_from_child``; None where the child has no pose of its own."""
-    shifts: Array | None = None
-    """(n_frames, 3) m, origin of the child in the parent."""
+    points: Array
+    """(n_frames, n_markers, 3) m; NaN where not seen."""
+    noise: Array
+    """(n_markers,) m, standard deviation of each marker in every direction."""
+    pose: Array
+    """(6, 6) uncertainty of the seeing limb's own pose, as `pose_covariance` returns it."""
 
 
 @dataclass(frozen=True)
 class CentreFit:
     """A joint centre, and how well the motion alone knows it."""
 
-    in_parent: Array
-    """(3,) m."""
-    in_child: Array | None
-    """(3,) m; None where the child has no pose of its own."""
+    centre: Array
+    """(3,) m, in the frame of the seeing limb."""
     noise: float
-    """m, robust standard deviation of the distances it was fitted to."""
+    """m, robust standard deviation of the distances that should stay the same."""
     data_covariance: Array
-    """(3, 3) m² of the centre in the parent as far as the motion knows it; large where it does not."""
+    """(3, 3) m² of the centre as far as the motion knows it; a thousand spreads where it does not."""
     covariance: Array
     """(3, 3) m² with the expectation taken in."""
     n_poses: int
@@ -50,8 +50,8 @@ def score_centre(
 ) -> tuple[Array, Array, float]:
     """Return the common point of two bodies in both frames, and its rms disagreement.
 
-    Minimises ``Σ |c_parent - R c_child - t|²`` (SCoRE [1]_, here in the parent's frame) with a ridge
-    that draws both towards their origins where the motion says nothing.
+    Minimises ``Σ |c_parent - R c_child - t|²`` (SCoRE [1]_, here in the parent's frame) with a
+    ridge that draws both towards their origins where the motion says nothing.
 
     Parameters
     ----------
@@ -100,8 +100,8 @@ def sphere_centre(points: Array, expected: Array, ridge: float = 1e-4) -> Array:
     .. [1] Gamage & Lasenby (2002), J. Biomech. 35(1), 87-93, doi:10.1016/S0021-9290(01)00160-9.
     """
     normal, right = np.zeros((3, 3)), np.zeros(3)
-    for y in np.moveaxis(points, 1, 0) - expected:
-        y = y[np.isfinite(y).all(axis=1)]
+    for seen in np.moveaxis(points, 1, 0) - expected:
+        y = seen[np.isfinite(seen).all(axis=1)]
         if len(y) < 2:
             continue
         centred = y - y.mean(axis=0)
@@ -114,15 +114,14 @@ def sphere_centre(points: Array, expected: Array, ridge: float = 1e-4) -> Array:
     return centre
 
 
-def fit_centre(
-    view: PairView, expected: Array, spread: float | Array, *, rounds: int = 30
-) -> CentreFit:
-    """Fit the point that both limbs share, by maximum a posteriori.
+def fit_centre(view: View, expected: Array, spread: float, *, rounds: int = 50) -> CentreFit:
+    """Fit the point that markers turn about, by maximum a posteriori.
 
-    The data: every marker of the child keeps its distance to the centre carried by the parent, every
-    marker of the parent its distance to the centre carried by the child, and the two centres agree.
-    Each kind of residual has its own noise, estimated robustly, and a soft-L1 loss. Distances need no
-    rotations, so noisy ones do not draw the centre towards the markers as they do in SCoRE.
+    The data: every marker keeps its distance to the centre. Residuals have a soft-L1 loss, and each
+    is measured against the noise it should have, that of the seeing limb's own pose included: an
+    orientation shaky about a limb's long axis makes a centre far from that axis shaky, and without
+    this the fit would flee to the axis (errors in variables; as in Sampson's distance the weight
+    follows the centre).
 
     The expectation ``expected ± spread`` speaks where the motion does not. Residuals of similar
     poses are not independent (soft tissue), so frames count by the distinct poses they show.
@@ -130,40 +129,39 @@ def fit_centre(
     Parameters
     ----------
     view
-        The limbs seen from each other.
+        The markers of one limb, seen from the other.
     expected : (3,) m
-        Expected centre in the parent's frame.
+        Expected centre in the frame of the seeing limb.
     spread
-        m, its standard deviation; or (3, 3) m², its covariance.
+        m, its standard deviation.
+    rounds
+        Most steps of the descent.
     """
-    prior = np.eye(3) / spread**2 if np.ndim(spread) == 0 else np.linalg.inv(np.asarray(spread))
     n_poses = count_poses(view, expected)
-    best: tuple[float, Array] | None = None
-    for start in _starts(view, expected):
-        x, cost = _descend(view, start, expected, prior * 0.01, n_poses, rounds)
-        if best is None or cost < best[0] * (1 - 1e-9):
-            best = (cost, x)
-    assert best is not None
-    x, _ = _descend(view, best[1], expected, prior, n_poses, rounds)
-    hessian, _, _, noise = _normal_equations(view, x, n_poses)
-    data, both = _centre_information(hessian), hessian.copy()
-    both[:3, :3] += prior
-    loose = 1e-6 * prior  # keeps directions without any information finite: a thousand spreads
+    starts = (expected, sphere_centre(view.points, expected))
+    x = min(starts, key=lambda start: _cost(view, start, expected, spread))
+    prior = 1 / spread**2
+    for weight in (0.01 * prior, prior):
+        x = _descend(view, x, expected, weight, n_poses, rounds)
+    scales = [_scale(term.residual)[0] for term in _distances(view, x)]
+    scale = float(np.median(scales)) if scales else 1.0
+    information = _information(view, x, n_poses, scale)
+    distances = np.linalg.norm(view.points - x, axis=2)
+    off = np.abs(distances - np.nanmedian(distances, axis=0))
     return CentreFit(
-        in_parent=x[:3],
-        in_child=x[3:] if len(x) == 6 else None,
-        noise=noise,
-        data_covariance=np.linalg.inv(data + loose),
-        covariance=np.linalg.inv(_centre_information(both)),
+        centre=x,
+        noise=1.4826 * float(np.nanmedian(off)),
+        data_covariance=np.linalg.inv(information + 1e-6 * prior * np.eye(3)),
+        covariance=np.linalg.inv(information + prior * np.eye(3)),
         n_poses=n_poses,
     )
 
 
-def count_poses(view: PairView, centre: Array) -> int:
-    """Return how many distinct poses of the child the parent sees: cells of `CELL` on its spheres."""
+def count_poses(view: View, centre: Array) -> int:
+    """Return how many distinct poses there are: cells of `CELL` on the markers' spheres."""
     most = 1
-    for y in np.moveaxis(view.child_in_parent, 1, 0) - centre:
-        y = y[np.isfinite(y).all(axis=1)]
+    for seen in np.moveaxis(view.points, 1, 0) - centre:
+        y = seen[np.isfinite(seen).all(axis=1)]
         if len(y) == 0:
             continue
         radius = max(float(np.median(np.linalg.norm(y, axis=1))), 1e-9)
@@ -172,88 +170,92 @@ def count_poses(view: PairView, centre: Array) -> int:
     return most
 
 
-def _starts(view: PairView, expected: Array) -> list[Array]:
-    """Return where to start: at the expectation, and where algebra puts the centre."""
-    centres = [expected, sphere_centre(view.child_in_parent, expected)]
-    if view.rotations is None or view.shifts is None:
-        return centres
-    in_child = [np.swapaxes(view.rotations, 1, 2) @ (c - view.shifts)[..., None] for c in centres]
-    starts = [
-        np.concatenate([c, np.nanmedian(k[..., 0], axis=0)])
-        for c, k in zip(centres, in_child, strict=True)
-    ]
-    scored = np.concatenate(score_centre(view.rotations, view.shifts, ridge=1e-6)[:2])
-    return [*starts, scored]
+class _Distances(NamedTuple):
+    """One marker's distances to the centre."""
+
+    residual: Array
+    """(n,) distance less the usual one, over its expected noise."""
+    jacobian: Array
+    """(n, 3) 1/m, how the residual follows the centre."""
+
+
+def _cost(view: View, x: Array, expected: Array, spread: float) -> float:
+    """Return how badly a start fits, its distance from the expectation taken in mildly."""
+    terms = _distances(view, x)
+    off = np.concatenate([np.abs(term.residual) for term in terms]) if terms else np.zeros(1)
+    far = float(np.linalg.norm(x - expected)) / (10 * spread)
+    return float(np.log(np.mean(off) + NOISE_FLOOR)) + max(0.0, far - 1.0)
 
 
 def _descend(
-    view: PairView, start: Array, expected: Array, prior: Array, n_poses: int, rounds: int
-) -> tuple[Array, float]:
-    """Iterate damped Gauss-Newton with weights and noise of the current residuals."""
-    x, cost = start, np.inf
+    view: View, x: Array, expected: Array, prior: float, n_poses: int, rounds: int
+) -> Array:
+    """Iterate Gauss-Newton; weights and scale of the residuals follow the current point."""
     for _ in range(rounds):
-        hessian, gradient, cost, _ = _normal_equations(view, x, n_poses)
-        off = x[:3] - expected
-        hessian[:3, :3] += prior
-        gradient[:3] += prior @ off
-        step = -np.linalg.solve(hessian + 1e-13 * np.trace(hessian) * np.eye(len(x)), gradient)
-        length = np.linalg.norm(step)
+        hessian, gradient = prior * np.eye(3), prior * (x - expected)
+        for residual, jacobian in _distances(view, x):
+            scale, w = _scale(residual)
+            share = n_poses / len(residual) / scale**2
+            hessian = hessian + share * (jacobian * w[:, None]).T @ jacobian
+            gradient = gradient + share * jacobian.T @ (w * residual)
+        step = -np.linalg.solve(hessian, gradient)
+        length = float(np.linalg.norm(step))
         x = x + step * min(1.0, 0.05 / max(length, 1e-12))
         if length < 1e-8:
             break
-    return x, cost
+    return x
 
 
-def _normal_equations(view: PairView, x: Array, n_poses: int) -> tuple[Array, Array, float, float]:
-    """Return Hessian, gradient, cost and noise of the data at ``x``; cost is a log-likelihood."""
-    n = len(x)
-    hessian, gradient, cost = np.zeros((n, n)), np.zeros(n), 0.0
-    noises = []
-    views = [(view.child_in_parent, slice(0, 3))]
-    if view.parent_in_child is not None and n == 6:
-        views.append((view.parent_in_child, slice(3, 6)))
-    for points, at in views:
-        for y in np.moveaxis(points, 1, 0):
-            arm = y[np.isfinite(y).all(axis=1)] - x[at]
-            if len(arm) < 2:
-                continue
-            distance = np.maximum(np.linalg.norm(arm, axis=1), 1e-9)
-            residual, jacobian, w, noise = _about_radius(distance, -arm / distance[:, None])
-            share = n_poses / len(arm) / noise**2
-            hessian[at, at] += share * (jacobian * w[:, None]).T @ jacobian
-            gradient[at] += share * jacobian.T @ (w * residual)
-            cost += n_poses * np.log(noise)
-            noises.append(noise)
-    if n == 6 and view.rotations is not None and view.shifts is not None:
-        known = np.isfinite(view.rotations).all(axis=(1, 2)) & np.isfinite(view.shifts).all(axis=1)
-        r, t = view.rotations[known], view.shifts[known]
-        gap = x[:3] - r @ x[3:] - t
-        size = np.linalg.norm(gap, axis=1)
-        noise = max(float(np.median(size)) / 1.538, NOISE_FLOOR)  # median of a 3-d normal's length
-        w = 1 / np.sqrt(1 + (size / (2 * noise)) ** 2)
-        share = n_poses / len(r) / noise**2
-        jacobian = np.concatenate([np.broadcast_to(np.eye(3), r.shape), -r], axis=2)
-        hessian += share * np.einsum("nki,n,nkj->ij", jacobian, w, jacobian)
-        gradient += share * np.einsum("nki,n,nk->i", jacobian, w, gap)
-        cost += 3 * n_poses * np.log(noise)
-    return hessian, gradient, cost, float(np.median(noises)) if noises else NOISE_FLOOR
+def _distances(view: View, centre: Array) -> list[_Distances]:
+    """Return every marker's distances to the centre, and how they follow it."""
+    own = point_covariance(view.pose, centre)
+    moved = point_covariance(view.pose, centre + _DIFFERENCE * np.eye(3))
+    terms = []
+    for seen, noise in zip(np.moveaxis(view.points, 1, 0), view.noise, strict=True):
+        arm = seen[np.isfinite(seen).all(axis=1)] - centre
+        if len(arm) < 2:
+            continue
+        distance = np.maximum(np.linalg.norm(arm, axis=1), 1e-9)
+        along = arm / distance[:, None]
+        variance = noise**2 + ((along @ own) * along).sum(axis=1)
+        growth = (np.einsum("ni,kij,nj->nk", along, moved - own, along)) / _DIFFERENCE
+        expected = np.sqrt(variance)
+        off = (distance - np.median(distance)) / expected
+        for _ in range(3):  # the radius: weighted mean of the distances
+            w = _scale(off)[1] / variance
+            off = (distance - (w * distance).sum() / w.sum()) / expected
+        change = -along + np.average(along, axis=0, weights=w)
+        jacobian = change / expected[:, None] - 0.5 * (off / variance)[:, None] * growth
+        terms.append(_Distances(off, jacobian))
+    return terms
 
 
-def _about_radius(distance: Array, jacobian: Array) -> tuple[Array, Array, Array, float]:
-    """Take the best radius out of distances and their derivatives; weigh by soft L1."""
-    residual = distance - np.median(distance)
-    for _ in range(3):
-        noise = max(1.4826 * float(np.median(np.abs(residual))), NOISE_FLOOR)
-        w = 1 / np.sqrt(1 + (residual / (2 * noise)) ** 2)
-        residual = residual - np.average(residual, weights=w)
-    jacobian = jacobian - np.average(jacobian, axis=0, weights=w)
-    return residual, jacobian, w, noise
+def _scale(residual: Array) -> tuple[float, Array]:
+    """Return the robust scale of residuals and their soft-L1 weights, (n,)."""
+    scale = max(1.4826 * float(np.median(np.abs(residual))), NOISE_FLOOR)
+    return scale, 1 / np.sqrt(1 + (residual / (2 * scale)) ** 2)
 
 
-def _centre_information(hessian: Array) -> Array:
-    """Return the information about the parent's centre alone, the child's solved out."""
-    if len(hessian) == 3:
-        return hessian
-    own, cross, other = hessian[:3, :3], hessian[:3, 3:], hessian[3:, 3:]
-    information: Array = own - cross @ np.linalg.pinv(other, hermitian=True) @ cross.T
-    return information
+def _information(view: View, centre: Array, n_poses: int, scale: float) -> Array:
+    """Return what distances tell about the centre, (3, 3) 1/m².
+
+    The directions to the markers are noisy themselves, which looks like motion; that share is
+    taken off again.
+    """
+    own = point_covariance(view.pose, centre)
+    total = np.zeros((3, 3))
+    for seen, noise in zip(np.moveaxis(view.points, 1, 0), view.noise, strict=True):
+        y = seen[np.isfinite(seen).all(axis=1)]
+        if len(y) < 2:
+            continue
+        distance = np.maximum(np.linalg.norm(y - centre, axis=1), 1e-9)
+        along = (y - centre) / distance[:, None]
+        w = 1 / (noise**2 + ((along @ own) * along).sum(axis=1)) / scale**2
+        spread = along - np.average(along, axis=0, weights=w)
+        across = (np.eye(3) - along[:, :, None] * along[:, None, :]) / distance[:, None, None]
+        shaky = across @ (noise**2 * np.eye(3) + point_covariance(view.pose, y)) @ across * scale**2
+        told = np.einsum("ni,n,nj->ij", spread, w, spread) - np.einsum("n,nij->ij", w, shaky)
+        values, vectors = np.linalg.eigh(told)
+        total += (vectors * np.maximum(values, 0.0)) @ vectors.T * n_poses / len(y)
+    return total
+

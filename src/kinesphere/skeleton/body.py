@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from kinesphere.data import Array, Mask
-from kinesphere.geometry.rigid import RigidFit, fit_rigid, fit_shape, into_frame
+from kinesphere.geometry.rigid import RigidFit, fit_rigid, fit_shape, into_frame, pose_covariance
 
 NOISE = 0.001
 """m, least noise a point's weight reckons with: no three points take the whole fit."""
@@ -55,6 +55,12 @@ class Body:
         return weights
 
 
+    @property
+    def pose_covariance(self) -> Array:
+        """(6, 6) uncertainty of the limb's pose, rad and m, from the noise of its points."""
+        return pose_covariance(self.points, 1 / np.sqrt(self.weights))
+
+
 def measure_shape(
     points: Array, outlier: float, min_spread: float, noise: Array | None = None
 ) -> tuple[Array, Array, RigidFit] | None:
@@ -70,7 +76,8 @@ def measure_shape(
     noise : (n_points,) m, optional
         First guess of each point's noise.
     """
-    noise = np.zeros(points.shape[1]) if noise is None else noise
+    n = points.shape[1]
+    noise = np.zeros(n) if noise is None else noise
     for _ in range(4):
         weights = 1 / (noise**2 + NOISE**2)
         shape = fit_shape(points, weights, outlier=outlier, min_spread=min_spread)
@@ -78,7 +85,8 @@ def measure_shape(
             return None
         fit = fit_rigid(shape, points, weights, min_spread=min_spread)
         residual = np.linalg.norm(into_frame(fit.rotations, fit.shifts, points) - shape, axis=2)
-        noise = robust_rms(residual)
+        # the fit itself takes up six of the coordinates: what is left looks smaller than the noise
+        noise = robust_rms(residual) * np.sqrt(3 * n / max(3 * n - 6, 1))
     return shape, noise, fit
 
 

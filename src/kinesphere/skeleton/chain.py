@@ -6,10 +6,10 @@ import numpy as np
 
 from kinesphere.data import Array, JointModel, TopologicalModel
 from kinesphere.errors import DegenerateMotion
-from kinesphere.geometry.centres import CentreFit, PairView, fit_centre
+from kinesphere.geometry.centres import CentreFit, View, fit_centre
 from kinesphere.geometry.rigid import into_frame, out_of_frame
 from kinesphere.geometry.rotations import mean_rotation, rotation_between
-from kinesphere.skeleton.body import Body, measure_shape, robust_rms
+from kinesphere.skeleton.body import NOISE, Body, measure_shape, robust_rms
 from kinesphere.skeleton.body_axes import (
     HINGE_SIGN,
     beside,
@@ -101,33 +101,20 @@ def _measure_limb(
     outlier, min_spread = settings.outlier_mm * 1e-3, settings.min_spread_mm * 1e-3
     seen_by_parent = into_frame(parent.rotations, parent.shifts, own)
     solid = measure_shape(own, outlier, min_spread) if len(labels) > 2 else None
-    if solid is not None:
-        shape, noise, pose = solid
-        rotations = np.swapaxes(parent.rotations, 1, 2) @ pose.rotations
-        shifts = into_frame(parent.rotations, parent.shifts, pose.shifts[:, None])[:, 0]
-        seen_by_child = into_frame(pose.rotations, pose.shifts, cloud(parent.labels, sample))
-        view = PairView(seen_by_parent, seen_by_child, rotations, shifts)
-    else:
-        view = PairView(seen_by_parent)
+    usual = float(np.sqrt(np.mean(parent.noise**2)) if solid is None else 0.0)
+    noise = np.full(len(labels), usual) if solid is None else solid[1]
+    view = View(seen_by_parent, np.hypot(noise, NOISE), parent.pose_covariance)
     fit = fit_centre(view, expected, spread)
     measured = MeasuredJoint(joint, fit, expected, source)
-    centre = out_of_frame(parent.rotations, parent.shifts, fit.in_parent[None])[:, 0]
-    if solid is not None and fit.in_child is not None:
-        gap = np.linalg.norm(
-            out_of_frame(pose.rotations, pose.shifts, fit.in_child[None])[:, 0] - centre, axis=1
-        )
-        body = Body(joint.child, joint.parent, labels, shape, noise, fit.in_child)
-        body.centre_noise = float(robust_rms(gap[:, None])[0])
-    elif (
-        with_joint := measure_shape(
-            np.concatenate([own, centre[:, None]], axis=1), outlier, min_spread
-        )
-    ) is not None:
-        shape, noise, _ = with_joint
-        body = Body(joint.child, joint.parent, labels, shape[:-1], noise[:-1], shape[-1])
-        body.centre_noise = float(noise[-1])
-    else:
+    centre = out_of_frame(parent.rotations, parent.shifts, fit.centre[None])[:, 0]
+    with_joint = measure_shape(
+        np.concatenate([own, centre[:, None]], axis=1), outlier, min_spread
+    )
+    if with_joint is None:
         return _measure_line(joint, parent, tree, sample, centre, own, settings), measured
+    shape, noise, _ = with_joint
+    body = Body(joint.child, joint.parent, labels, shape[:-1], noise[:-1], shape[-1])
+    body.centre_noise = float(noise[-1])
     carried = (Neighbour(_known(body.centre), centre, body.centre_noise),)
     poses = fit_poses(body, own, carried, (), min_spread)
     body.rotations, body.shifts = poses.rotations, poses.shifts

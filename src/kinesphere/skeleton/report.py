@@ -46,7 +46,7 @@ def describe_joint(
     """Return the joint with its residual, range of motion, covariance and observability."""
     fit, model = measured.fit, measured.model
     assert body.centre is not None
-    gap = np.linalg.norm(parent.carry(fit.in_parent) - child.carry(body.centre), axis=1)
+    gap = np.linalg.norm(parent.carry(fit.centre) - child.carry(body.centre), axis=1)
     known = gap[np.isfinite(gap)]
     moved = range_of_motion(np.swapaxes(parent.rotations, 1, 2) @ child.rotations)
     verdict, note = _verdict(measured, moved, settings)
@@ -54,7 +54,7 @@ def describe_joint(
         name=model.name,
         parent=model.parent,
         child=model.child,
-        centre_in_parent=fit.in_parent,
+        centre_in_parent=fit.centre,
         centre_in_child=body.centre,
         residual=float(np.sqrt(np.mean(known**2))) if len(known) else np.nan,
         range_of_motion=moved,
@@ -68,7 +68,7 @@ def _verdict(
     measured: MeasuredJoint, moved: float, settings: SkeletonSettings
 ) -> tuple[Observability, str]:
     fit = measured.fit
-    inflate = max(1.0, (VERDICT_NOISE / fit.noise) ** 2)
+    inflate = max(1.0, (VERDICT_NOISE / max(fit.noise, 1e-9)) ** 2)
     deviations = np.sqrt(np.linalg.eigvalsh(fit.data_covariance * inflate))
     weak = int((deviations > settings.undetermined_mm * 1e-3).sum())
     degrees = np.rad2deg(moved)
@@ -91,7 +91,7 @@ def describe_limb(tree: Tree, body: Body, joints: dict[str, MeasuredJoint]) -> L
     of the joints below to the joint above, in the sense of ``body.up``.
     """
     ends = {
-        joint.model.child: joint.fit.in_parent
+        joint.model.child: joint.fit.centre
         for joint in joints.values()
         if joint.model.parent == body.name
     }

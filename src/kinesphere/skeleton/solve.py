@@ -40,10 +40,10 @@ def solve_poses(
     for limb in tree.limbs:
         body = bodies[limb]
         parent = None if body.parent is None else poses[body.parent]
-        centre = None if parent is None else parent.carry(joints[limb].fit.in_parent)
+        centre = None if parent is None else parent.carry(joints[limb].fit.centre)
         helpers = tuple(
             Neighbour(
-                joints[child].fit.in_parent,
+                joints[child].fit.centre,
                 alone[child].carry(_centre(bodies[child])),
                 bodies[child].centre_noise,
             )
