@@ -1,7 +1,7 @@
 """Which marker is which: topological models, label spellings, subjects."""
 
-from kinesphere.labelling.match import choose_model as choose_model
-from kinesphere.labelling.match import coverage as coverage
+from kinesphere.labelling.choice import choose_model as choose_model
+from kinesphere.labelling.choice import coverage as coverage
 from kinesphere.labelling.match import match_labels as match_labels
 from kinesphere.labelling.models import built_in_model as built_in_model
 from kinesphere.labelling.models import built_in_models as built_in_models

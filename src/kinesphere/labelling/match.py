@@ -1,59 +1,26 @@
-"""A recording's labels brought to those of a model; which model, which person."""
+"""One person's labels brought to those of a model."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TypeAlias
 
 import numpy as np
 
 from kinesphere import __version__
 from kinesphere.data import Json, Recording, Step, TopologicalModel
 from kinesphere.errors import BadRecording
-from kinesphere.labelling.models import built_in_model, built_in_models
-from kinesphere.labelling.spelling import columns_by_label, spelled, vocabulary
-from kinesphere.labelling.subjects import Name, parse_labels
+from kinesphere.labelling.choice import (
+    COVERED,
+    choose_subject,
+    covered_share,
+    names_by_subject,
+    names_of,
+)
+from kinesphere.labelling.spelling import columns_by_label
+from kinesphere.labelling.subjects import Name
 
-COVERED = 0.9
-"""Share of a model's required labels from which on a recording counts as wearing that layout."""
 PERSON = 0.5
 """Share from which on a prefix counts as another person rather than a prop: half a body is no
 wand."""
-
-_Groups: TypeAlias = Mapping[str, Sequence[Name]]
-
-
-def coverage(recording: Recording, model: TopologicalModel, subject: str | None = None) -> float:
-    """Return the share of the model's required labels that the recording has, 0…1.
-
-    Without ``subject``, that of the subject who has most of them. A model that requires nothing
-    counts all its labels. A label is there even if its marker was never seen.
-
-    Raises
-    ------
-    BadRecording
-        If no label names that subject.
-    """
-    groups = _by_subject(recording, model)
-    if subject is not None:
-        return _covered(_of_subject(groups, subject), model)
-    return max((_covered(names, model) for names in groups.values()), default=0.0)
-
-
-def choose_model(recording: Recording, subject: str | None = None) -> TopologicalModel | None:
-    """Return the built-in model whose layout the recording wears, or None.
-
-    The one with the highest coverage from 90 % on; of equals, the one that names more markers.
-    """
-
-    def fit(model: TopologicalModel) -> tuple[float, int]:
-        groups = _by_subject(recording, model)
-        chosen = groups.values() if subject is None else [_of_subject(groups, subject)]
-        return max((_covered(names, model), len(spelled(names, model))) for names in chosen)
-
-    if not recording.labels:
-        return None
-    best = max(map(built_in_model, built_in_models()), key=fit)
-    return best if fit(best)[0] >= COVERED else None
 
 
 def match_labels(
@@ -77,9 +44,9 @@ def match_labels(
         If the subject is unknown, several people wear the layout and none was picked, no label of
         the model is there, or two markers claim one label.
     """
-    groups = _by_subject(recording, model)
-    chosen = _choose_subject(groups, model) if subject is None else subject
-    names = _of_subject(groups, chosen)
+    groups = names_by_subject(recording, model)
+    chosen = choose_subject(groups, model) if subject is None else subject
+    names = names_of(groups, chosen)
     columns = columns_by_label(names, model)
     if not columns:
         shown = ", ".join(recording.labels[:8]) + (", …" if len(recording.labels) > 8 else "")
@@ -87,7 +54,7 @@ def match_labels(
     others = {
         other: [name.column for name in theirs]
         for other, theirs in groups.items()
-        if other not in (chosen, "") and _covered(theirs, model) >= PERSON
+        if other not in (chosen, "") and covered_share(theirs, model) >= PERSON
     }
     dropped = {column for theirs in others.values() for column in theirs}
     kept = [column for column in range(recording.n_markers) if column not in dropped]
@@ -100,40 +67,6 @@ def match_labels(
         residuals=None if recording.residuals is None else recording.residuals[:, kept],
         history=(*recording.history, step),
     )
-
-
-def _by_subject(recording: Recording, model: TopologicalModel) -> _Groups:
-    """Group names by subject; with one prefix in the file, bare names are that subject's too."""
-    groups: dict[str, list[Name]] = {}
-    for name in parse_labels(recording.labels, vocabulary(model)):
-        groups.setdefault(name.subject, []).append(name)
-    prefixed = [subject for subject in groups if subject]
-    if len(prefixed) == 1 and "" in groups:
-        return {prefixed[0]: [*groups[prefixed[0]], *groups[""]]}
-    return groups
-
-
-def _of_subject(groups: _Groups, subject: str) -> Sequence[Name]:
-    if subject not in groups:
-        there = ", ".join(repr(known) for known in groups if known) or "none: labels have no prefix"
-        raise BadRecording(f"no marker belongs to subject {subject!r}; subjects are {there}")
-    return groups[subject]
-
-
-def _covered(names: Sequence[Name], model: TopologicalModel) -> float:
-    wanted = model.required or model.labels
-    found = spelled(names, model)
-    return sum(label in found for label in wanted) / len(wanted) if wanted else 0.0
-
-
-def _choose_subject(groups: _Groups, model: TopologicalModel) -> str:
-    shares = {subject: _covered(names, model) for subject, names in groups.items()}
-    wearing = [subject for subject, share in shares.items() if share > 0]
-    covered = [subject for subject in wearing if shares[subject] >= COVERED] or wearing
-    if len(covered) > 1:
-        people = ", ".join(f"{s or '(no prefix)'} ({shares[s]:.0%})" for s in covered)
-        raise BadRecording(f"several subjects wear layout {model.name}: {people}; pick a subject")
-    return covered[0] if covered else next(iter(groups), "")
 
 
 def _new_labels(

@@ -1,8 +1,8 @@
 """Where head, feet, front and back are, by what markers are commonly called.
 
 A model names its segments; without one, or where it names none of them, the customary labels of
-gait and animation layouts (Plug-in-Gait, CMU, Vicon, Qualisys, CAST) serve as well: for telling up
-from down and left from right it does not matter exactly where a marker sits.
+gait and animation layouts (Plug-in-Gait, CMU, Qualisys, OpenSim, OpenPose) serve as well: to tell
+up from down and left from right it does not matter exactly where a marker sits.
 """
 
 import re
@@ -12,14 +12,21 @@ import numpy as np
 
 from kinesphere.data import Array, Recording, TopologicalModel
 
-HEAD = ("FHD", "BHD", "HD", "HEAD", "ARIEL", "HDF", "HDB", "TEMP")
-SHOULDERS = ("SHO", "FSH", "BSH", "ACR", "AC", "C7", "CV7", "CLAV", "CLA")
+HEAD = (
+    *("FHD", "BHD", "HD", "HEAD", "ARIEL", "HDF", "HDB"),
+    *("TEMP", "TEMPLE", "TOP.HEAD", "NOSE", "VERTEX"),
+)
+SHOULDERS = (
+    *("SHO", "SHOULDER", "FSH", "BSH", "ACR", "AC", "ACROMION", "ACROMIUM"),
+    *("C7", "CV7", "CLAV", "CLA", "STERNUM", "NECK"),
+)
 WAIST_FRONT = ("ASI", "ASIS", "IAS", "FWT")
 WAIST_BACK = ("PSI", "PSIS", "IPS", "BWT", "SACR", "VSAC")
-TOES = ("TOE", "MT5", "MT1", "FM1", "FM5", "TOE5", "FTF")
+HIPS = ("HIP", "HJC")
+TOES = ("TOE", "TOE5", "MT1", "MT2", "MT5", "FM1", "FM5", "FTF", "BIGTOE", "SMALLTOE", "TOE.TIP")
 HEELS = ("HEE", "HEEL", "HEL", "FCC", "CAL", "FTB")
-ANKLES = ("ANK", "FAL", "ANL")
-KNEES = ("KNE", "FLE")
+ANKLES = ("ANK", "ANKLE", "FAL", "ANL", "LMAL")
+KNEES = ("KNE", "KNEE", "FLE", "LFC")
 
 _SIDED = re.compile(r"(?:(?P<side>[LR])(?:EFT|IGHT)?[_. ]?)?(?P<core>.+)", re.DOTALL)
 
@@ -68,7 +75,7 @@ def find_long_axes(
     """Return unit vectors from the feet to the head, (n, 3): one per person and frame seen.
 
     Feet and head are the model's segments of that name where the recording has their markers, else
-    what the customary labels say; the shoulders stand in for a head without markers.
+    what the customary labels say; shoulders, then waist stand in for a head without markers.
     """
     axes = [_segments_axis(recording, model)] if model is not None else []
     if not any(axis is not None for axis in axes):
@@ -91,10 +98,16 @@ def _segments_axis(recording: Recording, model: TopologicalModel) -> Array | Non
 
 
 def _named_axis(body: Body) -> Array | None:
-    head, shoulders = body.middle(*HEAD), body.middle(*SHOULDERS)
-    upper = shoulders if head is None else head
+    waist = (*WAIST_FRONT, *WAIST_BACK, *HIPS)
+    ends = (body.middle(*names) for names in (HEAD, SHOULDERS, waist))
+    upper = next((end for end in ends if end is not None), None)
     lower = body.middle(*TOES, *HEELS, *ANKLES)
     return None if upper is None or lower is None else upper - lower
+
+
+def labelled_columns(recording: Recording) -> list[int]:
+    """Return the columns of all points that somebody labelled."""
+    return [c for c, label in enumerate(recording.labels) if label.rpartition(":")[2][:1] != "*"]
 
 
 def mean_seen(points: Array) -> Array:

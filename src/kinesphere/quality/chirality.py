@@ -41,12 +41,13 @@ def find_chirality(bodies: Iterable[Body]) -> Chirality:
 def _parts(body: Body) -> list[tuple[Array | None, ...]]:
     """Return (top, bottom, right, left, front, back) of every part that is its own witness."""
     waist = (*names.WAIST_FRONT, *names.WAIST_BACK)
-    right, left = body.side("R", waist), body.side("L", waist)
+    right, left = (body.side(side, (*waist, *names.HIPS)) for side in "RL")
+    shoulders = ("SHO", "SHOULDER", "FSH", "BSH", "ACR")
     trunk = (
         body.middle("C7", "CLAV"),
         body.middle("T10", "STRN"),
-        body.side("R", ("SHO", "FSH", "BSH")),
-        body.side("L", ("SHO", "FSH", "BSH")),
+        body.side("R", shoulders),
+        body.side("L", shoulders),
         body.middle("CLAV", "STRN"),
         body.middle("C7", "T10"),
     )
@@ -84,14 +85,11 @@ def _volume(
     front: Array | None,
     back: Array | None,
 ) -> Array | None:
-    if (
-        top is None
-        or bottom is None
-        or right is None
-        or left is None
-        or front is None
-        or back is None
-    ):
+    up, rightward, forward = _between(bottom, top), _between(left, right), _between(back, front)
+    if up is None or rightward is None or forward is None:
         return None
-    up, rightward, forward = unit(top - bottom), unit(right - left), unit(front - back)
     return np.asarray((np.cross(up, rightward) * forward).sum(axis=1))
+
+
+def _between(start: Array | None, end: Array | None) -> Array | None:
+    return None if start is None or end is None else unit(end - start)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinesphere.data import Array, Recording, UpAxis
+from kinesphere.quality.body import labelled_columns
 
 DIRECTIONS: tuple[UpAxis, ...] = ("+x", "-x", "+y", "-y", "+z", "-z")
 WITHIN = 0.8
@@ -47,8 +48,7 @@ def find_evidence(recording: Recording, long_axes: Array) -> Evidence:
     long_axes : (n, 3)
         Unit vectors from feet to head, one per person and frame.
     """
-    labelled = [c for c, label in enumerate(recording.labels) if not label.startswith("*")]
-    columns = labelled or list(range(recording.n_markers))
+    columns = labelled_columns(recording) or list(range(recording.n_markers))
     someone = recording.seen[:, columns].any(axis=1)
     points = recording.markers[someone][:, columns]
     if len(points) == 0:

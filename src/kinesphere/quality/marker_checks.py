@@ -1,0 +1,164 @@
+"""What is wrong with single markers: never seen, at zero, stuck, copied, jumping, missing."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from kinesphere.data import Array, Recording
+from kinesphere.quality.body import labelled_columns
+from kinesphere.quality.findings import Finding
+from kinesphere.quality.gaps import runs
+
+LONG_GAP = 0.5
+"""s; up to here a gap can be interpolated between its ends without much harm."""
+MUCH_MISSING, HALF_MISSING = 0.05, 0.5
+"""Shares of frames without a marker from which on that is worth a note and a warning."""
+FASTEST = 20.0
+"""m/s; a boxer's fist reaches 10 to 15, a thrower's hand 20."""
+LONGEST_STEP = 1.0
+"""s; over a longer gap a mean speed says nothing."""
+SAME_PLACE = 1e-3
+"""m; two markers are 9 mm and more across."""
+STILL = 1e-6
+"""m; a real marker jitters by a hundred times as much."""
+SAMPLED_FRAMES = 300
+"""Frames, evenly spread, that a comparison of all pairs looks at."""
+
+
+def check_never_seen(recording: Recording) -> Iterator[Finding]:
+    """Find labels without a single position."""
+    never = [c for c in labelled_columns(recording) if not recording.seen[:, c].any()]
+    if never:
+        labels = tuple(recording.labels[c] for c in never)
+        yield Finding(
+            "never-seen",
+            "warning",
+            f"never seen: {', '.join(labels)}",
+            "label the trial again, or leave these markers out of the model",
+            markers=labels,
+        )
+
+
+def check_at_zero(recording: Recording) -> Iterator[Finding]:
+    """Find markers at the exact origin: missing ones that some exporters write as zero."""
+    zero = (recording.markers == 0).all(axis=2)
+    for c in labelled_columns(recording):
+        if zero[:, c].any():
+            n, first = int(zero[:, c].sum()), int(zero[:, c].argmax())
+            yield Finding(
+                "at-zero",
+                "warning",
+                f"{recording.labels[c]} is exactly at the origin in {n} frames, from frame "
+                f"{recording.first_frame + first} on: likely missing, written as zero",
+                "export missing markers as missing (residual -1 in C3D, blank in TRC)",
+                markers=(recording.labels[c],),
+                frame=recording.first_frame + first,
+                numbers=(("frames", n),),
+            )
+
+
+def check_constant(recording: Recording) -> Iterator[Finding]:
+    """Find markers that stand still for all their life while others move."""
+    labelled = labelled_columns(recording)
+    seen = recording.seen[:, labelled]
+    points = recording.markers[:, labelled]
+    enough = seen.sum(axis=0) >= max(2.0, recording.rate)  # a second of it
+    high = np.where(seen[..., None], points, -np.inf).max(axis=0, initial=-np.inf)
+    low = np.where(seen[..., None], points, np.inf).min(axis=0, initial=np.inf)
+    still = enough & ((high - low) < STILL).all(axis=1)
+    if still.all() or not (enough & ~still).any():
+        return  # a statue, or nothing to compare with
+    for i in np.flatnonzero(still):
+        label = recording.labels[labelled[i]]
+        if not (points[seen[:, i], i] == 0).all():
+            yield Finding(
+                "constant",
+                "warning",
+                f"{label} never moves while others do",
+                "leave it out, or label the trial again",
+                markers=(label,),
+                frame=recording.first_frame + int(seen[:, i].argmax()),
+            )
+
+
+def check_coincident(recording: Recording) -> Iterator[Finding]:
+    """Find pairs that share one place in half the frames that have both."""
+    labelled = labelled_columns(recording)
+    wanted = min(SAMPLED_FRAMES, recording.n_frames)
+    frames = np.unique(np.linspace(0, recording.n_frames - 1, wanted).astype(int))
+    points = recording.markers[frames][:, labelled]
+    for i in range(len(labelled) - 1):
+        distances = np.linalg.norm(points[:, i + 1 :] - points[:, i : i + 1], axis=2)
+        together = np.isfinite(distances).sum(axis=0)
+        same = (distances < SAME_PLACE).sum(axis=0)  # NaN compares as False
+        for j in np.flatnonzero((same > 0) & (2 * same >= together)):
+            pair = (recording.labels[labelled[i]], recording.labels[labelled[i + 1 + j]])
+            frame = recording.first_frame + int(frames[(distances[:, j] < SAME_PLACE).argmax()])
+            yield Finding(
+                "coincident",
+                "warning",
+                f"{pair[0]} and {pair[1]} are at the same place from frame {frame} on",
+                "one of them is a copy: leave it out",
+                markers=pair,
+                frame=frame,
+            )
+
+
+def check_jumps(recording: Recording) -> Iterator[Finding]:
+    """Find steps from one sighting to the next that no body makes."""
+    for c in labelled_columns(recording):
+        at = np.flatnonzero(recording.seen[:, c])
+        if len(at) < 2:
+            continue
+        lasts = np.diff(at) / recording.rate
+        steps = np.linalg.norm(np.diff(recording.markers[at, c], axis=0), axis=1)
+        speeds: Array = np.where(lasts <= LONGEST_STEP, steps / lasts, 0.0)
+        fast = np.flatnonzero(speeds > FASTEST)
+        if len(fast) == 0:
+            continue
+        worst = int(speeds.argmax())
+        first = recording.first_frame + int(at[fast[0] + 1])
+        label = recording.labels[c]
+        yield Finding(
+            "jump",
+            "warning",
+            f"{label} jumps {_times(len(fast))}, first into frame {first}; the fastest by "
+            f"{steps[worst] * 1e3:.0f} mm into frame {recording.first_frame + int(at[worst + 1])} "
+            f"({speeds[worst]:.0f} m/s)",
+            "look for a swap with another marker, or a ghost, around these frames",
+            markers=(label,),
+            frame=first,
+            numbers=(("jumps", len(fast)), ("fastest_m_per_s", round(float(speeds[worst]), 1))),
+        )
+
+
+def check_gaps(recording: Recording) -> Iterator[Finding]:
+    """Find markers that are missing often or for long, while others are seen."""
+    labelled = labelled_columns(recording)
+    seen = recording.seen[:, labelled]
+    missing = ~seen & seen.any(axis=1, keepdims=True)  # frames without anybody are told once
+    columns, starts, stops = runs(missing)
+    shares = missing.mean(axis=0)
+    for i in np.flatnonzero(shares):
+        if not seen[:, i].any():
+            continue  # told as never seen
+        start, stop = starts[columns == i], stops[columns == i]
+        at = int((stop - start).argmax())
+        share, seconds = float(shares[i]), float((stop - start)[at] / recording.rate)
+        if share < MUCH_MISSING and seconds <= LONG_GAP:
+            continue
+        label, frame = recording.labels[labelled[i]], recording.first_frame + int(start[at])
+        yield Finding(
+            "gap",
+            "warning" if share >= HALF_MISSING else "note",
+            f"{label} is missing in {share:.1%} of the frames, longest from frame {frame} on for "
+            f"{seconds:.2f} s",
+            "fill it where the trial is reconstructed; meanwhile the limb's other markers must do",
+            markers=(label,),
+            frame=frame,
+            numbers=(("missing_share", round(share, 4)), ("longest_s", round(seconds, 4))),
+        )
+
+
+def _times(n: int) -> str:
+    return "once" if n == 1 else f"{n} times"

@@ -1,0 +1,131 @@
+"""The built-in models: complete, symmetrical, and about the body they claim to describe."""
+
+import numpy as np
+import pytest
+
+from kinesphere.errors import BadModel
+from kinesphere.labelling import built_in_model, built_in_models
+
+LIMBS = {
+    *("pelvis", "trunk", "head"),
+    *(
+        f"{side}_{limb}"
+        for side in ("left", "right")
+        for limb in ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
+    ),
+}
+AXES = dict(neck=2, lumbar=2, shoulder=2, elbow=1, wrist=2, hip=2, knee=1, ankle=2)
+HALVES = {"left": "right", "right": "left"}
+
+
+@pytest.fixture(params=built_in_models())
+def model(request):
+    return built_in_model(request.param)
+
+
+def other_side(name):
+    side, _, rest = name.partition("_")
+    return f"{HALVES[side]}_{rest}" if side in HALVES else name
+
+
+def test_both_layouts_are_there():
+    assert built_in_models() == ("cmu41", "plugin-gait")
+
+
+def test_an_unknown_name_is_answered_with_the_known_ones():
+    with pytest.raises(BadModel, match="'cmu42'; there are cmu41, plugin-gait"):
+        built_in_model("cmu42")
+
+
+def test_a_model_has_every_limb_and_joint(model):
+    assert {segment.name for segment in model.segments} == LIMBS
+    assert model.root == "pelvis"
+    paired = set(AXES) - {"neck", "lumbar"}
+    names = {"neck", "lumbar", *(f"{side}_{joint}" for side in HALVES for joint in paired)}
+    assert {j.name: j.n_axes for j in model.joints} == {n: AXES[n.split("_")[-1]] for n in names}
+
+
+def test_cmu41_has_41_markers_and_needs_them_all():
+    model = built_in_model("cmu41")
+    assert len(model.labels) == 41
+    assert set(model.required) == set(model.labels)
+
+
+def test_plugin_gait_does_without_arm_wands_and_extras():
+    model = built_in_model("plugin-gait")
+    assert len(model.required) == 35
+    assert not {"LUPA", "RFRM", "SACR", "LKNEM"} & set(model.required)
+    assert {"LUPA", "RFRM", "SACR", "LKNEM"} <= set(model.labels)
+
+
+def test_left_and_right_mirror_each_other(model):
+    swap = dict(model.mirror) | {right: left for left, right in model.mirror}
+    sided = {m for s in model.segments if s.name.split("_")[0] in HALVES for m in s.markers}
+    assert sided <= set(swap)
+
+    for segment in model.segments:
+        twin = model.segment(other_side(segment.name))
+        assert {swap.get(m, m) for m in segment.markers} == set(twin.markers)
+        assert {swap.get(m, m) for m in segment.shared} == set(twin.shared)
+
+    joints = {joint.name: joint for joint in model.joints}
+    for joint in model.joints:
+        twin = joints[other_side(joint.name)]
+        assert (twin.parent, twin.child) == (other_side(joint.parent), other_side(joint.child))
+        for mine, its in zip(joint.landmarks, twin.landmarks, strict=True):
+            assert {swap.get(m, m): w for m, w in mine.weights.items()} == its.weights
+            moves = (mine.inward, mine.down, mine.forward, mine.spread)
+            assert moves == (its.inward, its.down, its.forward, its.spread)
+
+
+def test_shared_markers_belong_to_a_neighbour(model):
+    for segment in model.segments:
+        near = {j.parent for j in model.joints if j.child == segment.name}
+        near |= {j.child for j in model.joints if j.parent == segment.name}
+        owned = {m for name in near for m in model.segment(name).markers}
+        assert set(segment.shared) <= owned
+
+
+def test_every_joint_has_a_landmark_of_known_labels_with_its_source(model):
+    for joint in model.joints:
+        assert joint.landmarks
+        for landmark in joint.landmarks:
+            assert sum(landmark.weights.values()) == pytest.approx(1, abs=1e-6)
+            assert set(landmark.weights) | set(landmark.scale or ()) <= set(model.labels)
+            assert landmark.source
+            assert 0.005 <= landmark.spread <= 0.05
+
+
+def test_aliases_lead_to_labels_and_are_none_themselves(model):
+    assert set(model.aliases.values()) <= set(model.labels)
+    assert not set(model.aliases) & set(model.labels)
+
+
+def hip_of(model, pelvis):
+    """Return the left hip that the first landmark puts into a pelvis; x anterior, y up, z right."""
+    (joint,) = (joint for joint in model.joints if joint.name == "left_hip")
+    landmark = joint.landmarks[0]
+    start, end = (np.array(pelvis[label]) for label in landmark.scale)
+    moves = np.array([landmark.forward, -landmark.down, landmark.inward])
+    point = sum(w * np.array(pelvis[label]) for label, w in landmark.weights.items())
+    return point + moves * np.linalg.norm(start - end)
+
+
+def test_hips_are_where_harrington_puts_them():
+    """Harrington et al. 2007 on a pelvis tilted by 12°, as in standing: within 6 mm of theirs."""
+    width, depth, tilt = 0.238, 0.155, np.radians(12)  # m, m
+    forward = np.array([np.cos(tilt), -np.sin(tilt), 0])
+    up = np.array([np.sin(tilt), np.cos(tilt), 0])
+    pelvis = {
+        "LASI": [0, 0, -width / 2],
+        "RASI": [0, 0, width / 2],
+        "LPSI": -depth * forward + [0, 0, -0.045],
+        "RPSI": -depth * forward + [0, 0, 0.045],
+    }
+    theirs = (
+        (-0.24 * depth - 0.0099) * forward
+        + (-0.30 * width - 0.0109) * up
+        + np.array([0, 0, -(0.33 * width + 0.0073)])
+    )
+    ours = hip_of(built_in_model("plugin-gait"), pelvis)
+    assert np.linalg.norm(ours - theirs) < 0.006
