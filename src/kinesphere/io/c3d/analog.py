@@ -31,9 +31,7 @@ def analog_from_samples(
     if n == 0:
         return None
     section = layout.section
-    raw = samples.astype(np.float64)
-    if _is_unsigned(section) and not layout.is_float:
-        raw = np.where(raw < 0, raw + 65536, raw)
+    raw = raw_samples(layout, samples)
     offset, scale = calibration(section, n)
     with np.errstate(invalid="ignore", over="ignore"):
         values = (raw - offset) * scale
@@ -56,6 +54,14 @@ def analog_from_samples(
         (*units, *("" for _ in range(len(units), n))),
         rate,
     )
+
+
+def raw_samples(layout: Layout, samples: NDArray[Any]) -> Array:
+    """Return the converter's numbers, (n_samples, n_channels): words may be meant unsigned."""
+    raw = samples.astype(np.float64)
+    if _is_unsigned(layout.section) and not layout.is_float:
+        raw = np.where(raw < 0, raw + 65536, raw)
+    return raw
 
 
 def samples_from_analog(analog: Analog, section: Section) -> Array:

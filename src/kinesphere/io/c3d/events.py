@@ -7,7 +7,7 @@ import numpy as np
 
 from kinesphere.data import Event
 from kinesphere.io.c3d.header import Header
-from kinesphere.io.c3d.parameters import Parameter, Section, floats, texts, words
+from kinesphere.io.c3d.parameters import Section, float_list, words
 
 
 def start_time(first_frame: int, rate: float) -> float:
@@ -58,18 +58,21 @@ def events_from_file(
     return tuple(events)
 
 
-def event_parameters(events: Sequence[Event], start: float) -> tuple[Parameter, ...]:
-    """Return the parameters of the group EVENT; ``start`` as in ``events_from_file``."""
+def with_events(section: Section, events: Sequence[Event], start: float) -> Section:
+    """Return the parameters with the group EVENT saying this; ``start`` as in reading."""
     times = np.array([event.time + start for event in events])
     minutes = np.floor(times / 60.0)
-    n = len(events)
+    for name in ("ICON_IDS", "GENERIC_FLAGS"):  # one a event, of events that are no more
+        section = section.without("EVENT", name)
     return (
-        words("USED", n),
-        *texts("CONTEXTS", [event.context for event in events]),
-        *texts("LABELS", [event.label for event in events]),
-        *texts("DESCRIPTIONS", [event.description for event in events]),
-        *texts("SUBJECTS", [event.subject for event in events]),
-        floats("TIMES", np.column_stack([minutes, times - 60.0 * minutes]), 2, n),
+        section.with_parameters("EVENT", words("USED", len(events)))
+        .with_texts("EVENT", "CONTEXTS", [event.context for event in events])
+        .with_texts("EVENT", "LABELS", [event.label for event in events])
+        .with_texts("EVENT", "DESCRIPTIONS", [event.description for event in events])
+        .with_texts("EVENT", "SUBJECTS", [event.subject for event in events])
+        .with_list(
+            "EVENT", *float_list("TIMES", np.column_stack([minutes, times - 60.0 * minutes]))
+        )
     )
 
 

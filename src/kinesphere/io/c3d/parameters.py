@@ -69,13 +69,15 @@ class Section:
         return next((g for g in self.groups if g.name.upper() == name.upper()), None)
 
     def find(self, group: str, name: str) -> Parameter | None:
-        """Return the first parameter of that name in a group of that name."""
-        for g in self.groups:
-            if g.name.upper() == group.upper():
-                for p in g.parameters:
-                    if p.name.upper() == name.upper():
-                        return p
-        return None
+        """Return the parameter of that name in a group of that name; the last, if several."""
+        found = [
+            p
+            for g in self.groups
+            if g.name.upper() == group.upper()
+            for p in g.parameters
+            if p.name.upper() == name.upper()
+        ]
+        return found[-1] if found else None
 
     def numbers(self, group: str, name: str) -> NDArray[Any]:
         """Return a parameter's numbers, and those of its continuations (``OFFSET2``…)."""
@@ -116,8 +118,8 @@ class Section:
         for new in parameters:
             at = [i for i, p in enumerate(content) if p.name.upper() == new.name.upper()]
             if at:
-                was = content[at[0]]
-                content[at[0]] = replace(
+                was = content[at[-1]]
+                content[at[-1]] = replace(
                     new, name=was.name, description=was.description, locked=was.locked
                 )
             else:
@@ -125,18 +127,39 @@ class Section:
         changed = replace(old, parameters=tuple(content))
         return Section(tuple(changed if g is old else g for g in self.groups))
 
+    def with_list(self, group: str, *parts: Parameter) -> "Section":
+        """Return the section with a list in parts: ``LABELS`` and its continuations."""
+        section = self
+        for gone in tuple(self._parts(group, parts[0].name))[len(parts) :]:
+            section = section.without(group, gone.name)
+        return section.with_parameters(group, *parts)
+
+    def with_texts(self, group: str, name: str, values: Sequence[str]) -> "Section":
+        """Return the section with a list of strings, as wide as the one before at least."""
+        width = max((p.dims[0] for p in self._parts(group, name) if p.dims), default=0)
+        return self.with_list(group, *texts(name, values, width))
+
+    def with_unique_names(self) -> "Section":
+        """Return the section with the earlier ones of parameters of one name numbered."""
+        return Section(tuple(replace(g, parameters=_numbered(g.parameters)) for g in self.groups))
+
     def without(self, group: str, name: str) -> "Section":
-        """Return the section without a parameter and its continuations."""
-        gone = {p.name.upper() for p in self._parts(group, name)}
-        old = self.group(group)
-        if old is None:
-            return self
-        kept = tuple(p for p in old.parameters if p.name.upper() not in gone)
-        return Section(tuple(replace(g, parameters=kept) if g is old else g for g in self.groups))
+        """Return the section without that parameter."""
+        return Section(
+            tuple(
+                replace(
+                    g,
+                    parameters=tuple(p for p in g.parameters if p.name.upper() != name.upper()),
+                )
+                if g.name.upper() == group.upper()
+                else g
+                for g in self.groups
+            )
+        )
 
     def _parts(self, group: str, name: str) -> Iterable[Parameter]:
-        number = 1
-        while (p := self.find(group, name if number == 1 else f"{name}{number}")) is not None:
+        number = 0
+        while (p := self.find(group, _part(name, number))) is not None:
             yield p
             number += 1
 
@@ -164,6 +187,15 @@ def floats(name: str, values: ArrayLike, *dims: int) -> Parameter:
     return Parameter(name, FLOAT, dims, data)
 
 
+def float_list(name: str, values: ArrayLike) -> tuple[Parameter, ...]:
+    """Return rows of numbers, (n,) or (n, k), as a parameter and continuations (``SCALE2``…)."""
+    rows = np.asarray(values, dtype=np.float64)
+    parts = [rows[i : i + MOST] for i in range(0, len(rows), MOST)] or [rows]
+    return tuple(
+        floats(_part(name, i), part, *part.shape[1:], len(part)) for i, part in enumerate(parts)
+    )
+
+
 def text(name: str, value: str) -> Parameter:
     """Return a parameter of one string."""
     data = value.encode()[:MOST]
@@ -178,10 +210,33 @@ def texts(name: str, values: Sequence[str], width: int = 0) -> tuple[Parameter, 
     chunks = [rows[i : i + most] for i in range(0, len(rows), most)] or [[]]
     return tuple(
         Parameter(
-            name if i == 0 else f"{name}{i + 1}",
+            _part(name, i),
             CHAR,
             (width, len(chunk)),
             b"".join(row.ljust(width) for row in chunk),
         )
         for i, chunk in enumerate(chunks)
     )
+
+
+def text_pairs(name: str, values: Sequence[str]) -> Parameter:
+    """Return an even number of strings as pairs, the way POINT:TYPE_GROUPS holds them."""
+    (flat,) = texts(name, values)
+    return replace(flat, dims=(flat.dims[0], 2, len(values) // 2))
+
+
+def _part(name: str, i: int) -> str:
+    return name if i == 0 else f"{name}{i + 1}"
+
+
+def _numbered(parameters: tuple[Parameter, ...]) -> tuple[Parameter, ...]:
+    taken = {p.name.upper() for p in parameters}
+    kept: list[Parameter] = []
+    for i, p in enumerate(parameters):
+        name, number = p.name, 1
+        if any(p.name.upper() == later.name.upper() for later in parameters[i + 1 :]):
+            while name.upper() in taken:
+                name, number = f"{p.name}_{number}", number + 1
+            taken.add(name.upper())
+        kept.append(replace(p, name=name))
+    return tuple(kept)
