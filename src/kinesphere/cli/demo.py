@@ -54,7 +54,7 @@ def demo(
         summary["truth"] = [as_json_row(row) for row in rows]
         print_json({**summary, "output": str(output)})
         return
-    show_solution(summary)
+    show_solution(summary, solution)
     show_truth(rows)
     stdout().print(f"\nReport: {report}  ({time.perf_counter() - start:.0f} s)", soft_wrap=True)
 

@@ -83,8 +83,11 @@ def show_recording(summary: dict[str, Any]) -> None:
     findings = summary["findings"]
     print_title(console, "What is wrong with it" if findings else "Nothing looks wrong with it")
     if findings:
-        rows = [(f["severity"], f["what"], f["remedy"]) for f in findings]
-        print_table(console, ("", "found", "remedy"), rows)
+        print_table(
+            console,
+            ("", "found", "remedy"),
+            [(f["severity"], f["what"], f["remedy"]) for f in findings],
+        )
 
 
 def _pairs(summary: dict[str, Any]) -> list[tuple[str, str]]:
@@ -140,11 +143,14 @@ def _up(
         found["text"] = f"{recording.up or 'not said'} by the file; {error}"
         return found
     used, source = step.findings.get("up"), step.findings.get("up_from")
-    found |= {"used": used, "from": source, "warnings": list(step.warnings)}
-    said = f"{recording.up} by the file" if recording.up else "the file does not say"
-    found["text"] = f"{used} (from the {source}; {said})"
-    if step.findings.get("mirrored"):
-        found["text"] = f"{found['text']}, mirrored"
+    upright = step.findings.get("upright_share")
+    found |= {"used": used, "from": source, "body": upright, "warnings": list(step.warnings)}
+    said = f"the file says {recording.up}" if recording.up else "the file does not say"
+    text = f"{used}, from the {source}: {said}"
+    if isinstance(upright, dict) and upright:
+        way, share = max(upright.items(), key=lambda item: float(str(item[1])))
+        text += f", the body stands along {way} in {float(str(share)):.0%} of the frames"
+    found["text"] = text + ("; mirrored" if step.findings.get("mirrored") else "")
     return found
 
 
@@ -153,7 +159,9 @@ def _gaps(recording: Recording) -> dict[str, Any]:
     by_marker: dict[int, list[Any]] = {}
     for gap in find_gaps(recording):
         by_marker.setdefault(gap.column, []).append(gap)
-    columns = sorted(by_marker, key=lambda c: -int(missing[:, c].sum()))
+    # Unlabelled points come and go by nature; what is missing of them says little.
+    named = [c for c in by_marker if not recording.labels[c].startswith("*")]
+    columns = sorted(named or by_marker, key=lambda c: -int(missing[:, c].sum()))
     worst = []
     for column in columns[:_WORST]:
         gaps = by_marker[column]
@@ -169,7 +177,7 @@ def _gaps(recording: Recording) -> dict[str, Any]:
         )
     return {
         "missing": float(np.mean(missing)) if missing.size else 0.0,
-        "markers_with_gaps": len(columns),
+        "markers_with_gaps": len(by_marker),
         "worst": worst,
     }
 

@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from kinesphere.cli.console import (
     print_pairs,
     print_table,
@@ -9,16 +11,9 @@ from kinesphere.cli.console import (
     print_warnings,
     stdout,
 )
+from kinesphere.cli.stages import stage_in_words
 from kinesphere.data import Solution, TopologicalModel
-from kinesphere.report import finding_in_words, number_in_words
-from kinesphere.report.tables import joint_rows, rms, unique
-
-_SHOWN = {
-    "read": ("format", "unit", "n_frames", "rate_hz"),
-    "labelling": ("subject", "required_found", "required", "missing", "extra"),
-    "orientation": ("up", "up_from", "mirrored"),
-}
-"""Findings worth a line in the terminal; of other stages, every number and name."""
+from kinesphere.report import JointRow, condensed, joint_rows, rms, unique
 
 
 def describe_solution(solution: Solution) -> dict[str, Any]:
@@ -37,7 +32,7 @@ def describe_solution(solution: Solution) -> dict[str, Any]:
             {
                 "name": joint.name,
                 "residual_mm": _number(joint.residual * 1e3),
-                "range_of_motion_deg": _number(joint.range_of_motion * 57.29577951308232),
+                "range_of_motion_deg": _number(np.rad2deg(joint.range_of_motion)),
                 "observability": joint.observability,
                 "n_axes": joint.n_axes,
                 "axes_from": joint.axes_source,
@@ -55,23 +50,11 @@ def describe_solution(solution: Solution) -> dict[str, Any]:
             for step in solution.history
         ],
         "warnings": unique(solution.warnings),
-        "rows": [
-            (
-                row.name,
-                row.residual,
-                row.range_of_motion,
-                row.observability,
-                row.axes,
-                " | ".join(angle for angle in row.angles[: row.n_axes]),
-                row.angles[-1],
-            )
-            for row in joint_rows(solution)
-        ],
     }
 
 
-def show_solution(summary: dict[str, Any]) -> None:
-    """Print the summary as tables."""
+def show_solution(summary: dict[str, Any], solution: Solution) -> None:
+    """Print the summary as tables: stages, joints, warnings."""
     console = stdout()
     seconds = summary["n_frames"] / summary["rate_hz"]
     print_title(
@@ -80,26 +63,38 @@ def show_solution(summary: dict[str, Any]) -> None:
         f"model {summary['model']}, {len(summary['limbs'])} limbs, {summary['n_frames']:,} frames, "
         f"{seconds:.2f} s",
     )
-    for stage in summary["stages"]:
-        took = "" if stage["seconds"] is None else number_in_words(stage["seconds"], "s")
-        print_title(console, stage["name"], took)
-        print_pairs(console, _short(stage))
+    rows = [
+        (
+            stage["name"],
+            stage_in_words(stage, summary),
+            "" if stage["seconds"] is None else f"{stage['seconds']:.2f} s",
+        )
+        for stage in summary["stages"]
+    ]
+    print_table(console, ("stage", "what was found", "took"), rows, "llr")
     print_title(console, "Joints")
     print_table(
         console,
         ("joint", "residual", "range", "centre", "axes", "angles 5–95 %", "twist"),
-        summary["rows"],
+        [_joint_cells(row) for row in joint_rows(solution)],
         "lrrllrr",
     )
-    pairs = [
-        ("limb fit", f"{number_in_words(summary['limb_residual_rms_mm'], 'mm')} rms"),
-        ("rebuilt", f"{number_in_words(summary['rebuilt_residual_rms_mm'], 'mm')} rms"),
-        ("seen", f"{summary['seen']:.1%} of all limb poses"),
-    ]
-    print_pairs(console, pairs)
     if summary["warnings"]:
         print_title(console, "Warnings")
-        print_warnings(console, summary["warnings"])
+        print_warnings(console, condensed(summary["warnings"]))
+
+
+def _joint_cells(row: JointRow) -> tuple[str, ...]:
+    angles = ", ".join(angle for angle in row.angles[: row.n_axes])
+    return (
+        row.name,
+        row.residual,
+        row.range_of_motion,
+        row.observability,
+        row.axes,
+        angles,
+        row.angles[-1],
+    )
 
 
 def describe_model(model: TopologicalModel) -> dict[str, Any]:
@@ -146,16 +141,6 @@ def show_model(summary: dict[str, Any]) -> None:
             )
         )
     print_table(console, ("segment", "joint", "markers", "shared"), rows)
-
-
-def _short(stage: dict[str, Any]) -> list[tuple[str, str]]:
-    findings = stage["findings"]
-    names = _SHOWN.get(stage["name"])
-    if names is None:
-        names = tuple(k for k, v in findings.items() if isinstance(v, int | float | str))
-    return [
-        finding_in_words(k, findings[k]) for k in names if findings.get(k) not in (None, [], "")
-    ]
 
 
 def _number(value: float) -> float | None:

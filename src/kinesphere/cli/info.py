@@ -34,15 +34,18 @@ def info(
     found = read(file)
     if isinstance(found, Recording):
         summary = describe_recording(found, subject)
-        show = show_recording
     elif isinstance(found, Solution):
-        summary, show = describe_solution(found), show_solution
+        summary = describe_solution(found)
     elif isinstance(found, TopologicalModel):
-        summary, show = describe_model(found), show_model
+        summary = describe_model(found)
     else:
         raise BadArgument(f"{file} holds a {type(found).__name__}, which info cannot describe")
     summary = {"file": str(file), **summary}
     if as_json:
         print_json(summary)
+    elif isinstance(found, Recording):
+        show_recording(summary)
+    elif isinstance(found, Solution):
+        show_solution(summary, found)
     else:
-        show(summary)
+        show_model(summary)

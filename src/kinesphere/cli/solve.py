@@ -86,7 +86,7 @@ def solve(
     if as_json:
         print_json(summary)
         return
-    show_solution(summary)
+    show_solution(summary, solution)
     stdout().print(f"\nReport: {report}", soft_wrap=True)
 
 

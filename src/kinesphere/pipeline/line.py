@@ -8,7 +8,7 @@ from typing import TypeAlias
 from kinesphere.data import Recording, Skeleton, Solution, TopologicalModel
 from kinesphere.errors import BadRecording
 from kinesphere.labelling import match_labels
-from kinesphere.normalization import normalize
+from kinesphere.normalization import Facing, normalize
 from kinesphere.parameterization import parameterize
 from kinesphere.pipeline.choice import model_for
 from kinesphere.pipeline.settings import Settings
@@ -28,7 +28,7 @@ def solve(
     subject: str | None = None,
     calibration: tuple[float, float] | None = None,
     calibration_from: Solution | Skeleton | None = None,
-    facing: str | None = None,
+    facing: Facing | None = None,
     settings: Settings | None = None,
     progress: Progress | None = None,
 ) -> Solution:

@@ -13,7 +13,8 @@ from markupsafe import Markup
 import kinesphere
 from kinesphere.data import Solution
 from kinesphere.report.scene import scene_from_solution
-from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles, unique
+from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
+from kinesphere.report.wording import condensed
 
 _SCRIPTS = ("unpack.js", "space.js", "player.js", "curves.js", "heat.js", "page.js")
 
@@ -40,7 +41,7 @@ def report_html(solution: Solution, title: str = "") -> str:
         title=title or "Solved motion",
         version=kinesphere.__version__,
         tiles=tiles(solution),
-        warnings=unique(solution.warnings),
+        warnings=condensed(solution.warnings),
         joints=joints,
         charts=chart_order(joints),
         limbs=limb_rows(solution),

@@ -33,7 +33,7 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
     """
     motion, parameters, recording = solution.motion, solution.parameters, solution.recording
     stride = frame_stride(motion.n_frames, motion.rate)
-    shown = slice(None, None, stride)
+    shown = np.arange(0, motion.n_frames, stride)
     columns = _shown_markers(solution)
     used = {label for limb in motion.skeleton.limbs for label in limb.markers}
     return {
@@ -125,7 +125,7 @@ def _reach(positions: Array) -> float:
 
 def _quaternions(rotations: Array) -> Array:
     """Return xyzw, (n, m, 3, 3) → (n, m, 4), of continuous sign; NaN stays NaN."""
-    known = np.isfinite(rotations).all(axis=(2, 3))
+    known = np.asarray(np.isfinite(rotations).all(axis=(2, 3)))
     found = np.full((*known.shape, 4), np.nan)
     if known.any():
         found[known] = Rotation.from_matrix(rotations[known]).as_quat()

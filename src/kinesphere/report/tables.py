@@ -1,6 +1,5 @@
 """The page's tables: what was found and the figures that tell whether to trust it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -255,8 +254,3 @@ def _other_side(name: str) -> str:
         if name.startswith((f"{side}_", f"{side} ")):
             return other + name.removeprefix(side)
     return name
-
-
-def unique(sentences: Sequence[str]) -> list[str]:
-    """Return sentences once each, in the order they came up."""
-    return list(dict.fromkeys(sentences))

@@ -1,0 +1,114 @@
+"""What each stage found, in a line or two for the terminal."""
+
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from kinesphere.report import finding_in_words, number_in_words
+
+
+def stage_in_words(stage: dict[str, Any], summary: dict[str, Any]) -> str:
+    """Return what a stage found and how good it is.
+
+    Parameters
+    ----------
+    stage
+        One of ``summary["stages"]``.
+    summary
+        As ``describe_solution`` returns it.
+    """
+    words = _WORDS.get(stage["name"], _any)
+    return words(stage["findings"], summary)
+
+
+def _any(found: dict[str, Any], _: dict[str, Any]) -> str:
+    plain = {k: v for k, v in found.items() if isinstance(v, int | float | str) and v != ""}
+    return ", ".join(" ".join(finding_in_words(k, v)) for k, v in list(plain.items())[:5])
+
+
+def _read(found: dict[str, Any], summary: dict[str, Any]) -> str:
+    kind = [found.get(key, "") for key in ("format", "encoding", "unit")]
+    head = ", ".join(str(word) for word in kind if word)
+    return f"{head}, {summary['n_frames']:,} frames at {summary['rate_hz']:g} Hz".lstrip(", ")
+
+
+def _labelling(found: dict[str, Any], summary: dict[str, Any]) -> str:
+    text = (
+        f"model {summary['model']}: {found.get('required_found')} of {found.get('required')} "
+        "labels are there"
+    )
+    if found.get("subject"):
+        text += f", subject {found['subject']}"
+    if missing := found.get("missing"):
+        text += f"; missing {', '.join(missing[:6])}" + (", …" if len(missing) > 6 else "")
+    if extra := found.get("extra"):
+        text += f"; {len(extra)} more not used"
+    return text
+
+
+def _orientation(found: dict[str, Any], _: dict[str, Any]) -> str:
+    text = f"up was {found.get('up')}, from the {found.get('up_from')}"
+    return text + ("; mirrored, turned right" if found.get("mirrored") else "")
+
+
+def _skeleton(_: dict[str, Any], summary: dict[str, Any]) -> str:
+    joints = summary["joints"]
+    kinds = Counter(joint["observability"] for joint in joints)
+    counted = ", ".join(f"{n} {kind}" for kind, n in kinds.most_common())
+    known = [joint for joint in joints if joint["residual_mm"] is not None]
+    text = (
+        f"{len(summary['limbs'])} limbs fit to {_mm(summary['limb_residual_rms_mm'])} rms; "
+        f"{len(joints)} joint centres: {counted}"
+    )
+    if known:
+        worst = max(known, key=lambda joint: joint["residual_mm"])
+        median = float(np.median([joint["residual_mm"] for joint in known]))
+        text += f"; apart {_mm(median)} (median), {_mm(worst['residual_mm'])} ({worst['name']})"
+    return text
+
+
+def _normalization(found: dict[str, Any], _: dict[str, Any]) -> str:
+    parts = []
+    if "default_time_s" in found:
+        n = found.get("n_frames_averaged", 1)
+        parts.append(
+            f"default position at {number_in_words(found['default_time_s'], 's')}, "
+            f"{n} {'frame' if n == 1 else 'frames'} averaged"
+        )
+    if isinstance(found.get("facing"), dict):
+        parts.append(f"facing by {found['facing'].get('decided_by')}")
+    if found.get("good_default_position") is False:
+        parts.append("not a good one (see below)")
+    return "; ".join(parts)
+
+
+def _parameterization(_: dict[str, Any], summary: dict[str, Any]) -> str:
+    sources = Counter(joint["axes_from"] for joint in summary["joints"])
+    said = {
+        "movement": "by their own movements",
+        "body": "of the body frame",
+        "reused": "of the other recording",
+        "given": "given",
+    }
+    counted = ", ".join(f"{n} {said.get(str(s), str(s))}" for s, n in sources.most_common())
+    n_axes = sum(joint["n_axes"] for joint in summary["joints"])
+    return (
+        f"{n_axes} axes, joints: {counted}; limbs rebuilt to "
+        f"{_mm(summary['rebuilt_residual_rms_mm'])} rms"
+    )
+
+
+def _mm(value: float | None) -> str:
+    return number_in_words(value, "mm")
+
+
+_WORDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], str]] = {
+    "read": _read,
+    "labelling": _labelling,
+    "orientation": _orientation,
+    "skeleton": _skeleton,
+    "normalization": _normalization,
+    "parameterization": _parameterization,
+}
