@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.geometry.rotations import mean_rotation, rotation_log
+from kinesphere.parameterization.axes.fit import Labels, phase_swing
 from kinesphere.parameterization.samples import JointSamples, Phase
 from kinesphere.parameterization.settings import AxesSettings
 
@@ -21,7 +21,7 @@ PERCENTILES = (5.0, 95.0)  # a range of motion leaves the extremes out
 class AxesQuality:
     """What speaks for and against a set of axes."""
 
-    labels: Array
+    labels: Labels
     """(n_phases,) which axis a phase moves about."""
     ranges: Array
     """(n_axes,) rad, range of motion about each axis in its phases."""
@@ -45,19 +45,17 @@ class AxesQuality:
 
 def assess_axes(samples: JointSamples, axes: Array, find: Finder) -> AxesQuality:
     """Measure how well phases support axes, (n_axes, 3), that ``find`` got from them."""
-    n_axes, n_phases = len(axes), len(samples.phases)
-    labels = np.zeros(n_phases, dtype=int)
+    n_axes = len(axes)
+    labels = np.zeros(len(samples.phases), dtype=np.intp)
     pooled = np.zeros((n_axes, 3, 3))
     explained = total = 0.0
-    for i, (start, stop) in enumerate(samples.phases):
-        w = _swing_vectors(samples, start, stop)
-        across = axes - np.outer(axes @ w.normal, w.normal)
-        across /= np.maximum(np.linalg.norm(across, axis=1), 1e-9)[:, None]
-        about = ((w.vectors @ across.T) ** 2).sum(axis=0)
+    for i, phase in enumerate(samples.phases):
+        swing = phase_swing(samples, phase)
+        about = swing.about(axes)
         labels[i] = int(about.argmax())
         explained += float(about.max())
-        total += float((w.vectors**2).sum())
-        pooled[labels[i]] += w.vectors.T @ w.vectors
+        total += float((swing.vectors**2).sum())
+        pooled[labels[i]] += swing.vectors.T @ swing.vectors
     values = np.linalg.eigvalsh(pooled)
     ranges, heights = np.zeros(n_axes), np.full(n_axes, np.nan)
     for k, axis in enumerate(axes):
@@ -80,7 +78,7 @@ def assess_axes(samples: JointSamples, axes: Array, find: Finder) -> AxesQuality
     )
 
 
-def halves_disagreement(samples: JointSamples, axes: Array, labels: Array, find: Finder) -> Array:
+def halves_disagreement(samples: JointSamples, axes: Array, labels: Labels, find: Finder) -> Array:
     """Return the largest angle between axes found from two halves, (n_axes,) rad.
 
     Three ways to halve: every phase cut in its middle; phases dealt out in turn; the recording cut
@@ -129,6 +127,24 @@ def reasons_to_doubt(quality: AxesQuality, axes: Array, s: AxesSettings) -> list
     return doubts
 
 
+def main_movements(samples: JointSamples, s: AxesSettings) -> tuple[Phase, ...]:
+    """Return the phases in which the limb moves about one axis, and far enough.
+
+    A main movement is done about one axis at a time (paper section 4); a phase of free motion is
+    not, but holds more movement than all of calibration and would outweigh it.
+    """
+    pure: list[Phase] = []
+    for phase in samples.phases:
+        w = phase_swing(samples, phase).vectors
+        values, vectors = np.linalg.eigh(w.T @ w)
+        angles = w @ vectors[:, 2]
+        extent = float(np.diff(np.percentile(angles, PERCENTILES))[0])
+        far_enough = extent >= np.deg2rad(s.smallest_range)
+        if far_enough and values[2] >= s.purest * values.sum():
+            pure.append(phase)
+    return tuple(pure)
+
+
 def observed_n_axes(samples: JointSamples) -> int | None:
     """Return how many axes the swing of the limb shows, 1 or 2; None without movement.
 
@@ -136,8 +152,8 @@ def observed_n_axes(samples: JointSamples) -> int | None:
     rotation about the limb, is below 5 % of the first.
     """
     pooled = np.zeros((3, 3))
-    for start, stop in samples.phases:
-        w = _swing_vectors(samples, start, stop).vectors
+    for phase in samples.phases:
+        w = phase_swing(samples, phase).vectors
         pooled += w.T @ w
     values = np.linalg.eigvalsh(pooled)
     if not values[2] > 0:
@@ -145,26 +161,12 @@ def observed_n_axes(samples: JointSamples) -> int | None:
     return 1 if values[1] < 0.05 * values[2] else 2
 
 
-@dataclass(frozen=True, eq=False)
-class _Swing:
-    vectors: Array  # (n, 3) rad, rotation vectors about the phase's mean, across the limb
-    normal: Array  # (3,) mean direction of the limb
-
-
-def _swing_vectors(samples: JointSamples, start: int, stop: int) -> _Swing:
-    rotations = samples.rotations[start:stop]
-    w = rotation_log(rotations @ mean_rotation(rotations).T)
-    p = samples.positions[start:stop].mean(axis=0)
-    p /= max(float(np.linalg.norm(p)), 1e-9)
-    return _Swing(w - np.outer(w @ p, p), p)
-
-
-def _zip(samples: JointSamples, labels: Array) -> list[tuple[Phase, int]]:
+def _zip(samples: JointSamples, labels: Labels) -> list[tuple[Phase, int]]:
     return [(phase, int(label)) for phase, label in zip(samples.phases, labels, strict=True)]
 
 
 def _splits(
-    samples: JointSamples, labels: Array, n_axes: int
+    samples: JointSamples, labels: Labels, n_axes: int
 ) -> list[tuple[tuple[Phase, ...], tuple[Phase, ...]]]:
     phases = samples.phases
     if not phases:

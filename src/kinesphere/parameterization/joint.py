@@ -19,6 +19,7 @@ from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.confidence import (
     AxesQuality,
     assess_axes,
+    main_movements,
     observed_n_axes,
     reasons_to_doubt,
 )
@@ -89,7 +90,7 @@ def view_joint(
     positions = smooth @ long_axis
     movement = find_movement(positions, rate, settings.filter, calibration)
     seen = np.asarray(np.isfinite(positions).all(axis=1) & calibration)
-    samples = JointSamples(smooth, positions, runs(movement.moving & seen), rate)
+    samples = JointSamples(smooth, positions, runs(movement.moving & seen), rate, long_axis)
     return JointView(name, rotations, long_axis, twist_known, samples, movement, seen)
 
 
@@ -166,7 +167,12 @@ def _movement_axes(
     def find(half: JointSamples) -> Array:
         return find_axes(half, n_axes, options)
 
-    axes = find(samples)
+    pure = samples.with_phases(main_movements(samples, options))
+    axes = find(pure)
+    if len(axes) == n_axes:
+        samples = pure
+    else:
+        axes = find(samples)
     if len(axes) == 0:
         return axes, None, ["the limb hardly moves"]
     quality = assess_axes(samples, axes, find)
@@ -185,7 +191,8 @@ def _movement_rest(
         # this method knows the order, and its distal axis holds for its own reference orientation
         axes, order = (axes, order) if order[0] == 0 else (axes[::-1], order[::-1])
         return axes, reference_rotation(view.samples), order
-    rest = _rest(view, axes, quality.heights[order], settings)
+    turned = np.sign((axes * found[order]).sum(axis=1))  # a cone's height turns with its axis
+    rest = _rest(view, axes, turned * quality.heights[order], settings)
     if len(axes) == 2:
         plain, other = (_order_cost(view, tried, rest, settings) for tried in (axes, axes[::-1]))
         if other[0] < plain[0] or (other[0] == plain[0] and other[1] < CLEARLY * plain[1]):

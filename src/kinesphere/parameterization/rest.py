@@ -66,35 +66,55 @@ def robust_rest(
 ) -> Array:
     """Return the mean orientation of slow samples around the target, (3, 3).
 
-    Moving samples serve where fewer than five slow ones are near; where even those are missing,
-    the nearest sample is turned onto the target, about the axis for a one-axis joint.
+    A one-axis joint's samples are first turned about its axis to the target's azimuth, so that a
+    knee never seen straight still has a straight zero. Moving samples serve where fewer than
+    five slow ones are near; where even those are missing, the nearest is turned onto the target.
 
     Parameters
     ----------
     rotations, positions : (n, 3, 3), (n, 3)
-        NaN where unseen.
+        Without NaN, at least one.
     slow : (n,)
     axes : (n_axes, 3)
     target : (3,)
     s
         Radius of the neighbourhood.
     """
-    apart = np.arccos(np.clip(positions @ target, -1, 1))
+    apart = _angle_between(positions, target)
+    if len(axes) == 1:
+        return _one_axis_rest(rotations, positions, slow, axes[0], target, s)
     near = np.asarray(apart <= np.deg2rad(s.radius))
     for chosen in (near & slow, near):
         if chosen.sum() >= FEWEST:
             return mean_rotation(rotations[chosen])
-    nearest = int(np.nanargmin(apart))
-    rest = rotations[nearest]
-    if len(axes) == 1:
-        axis, p = axes[0], positions[nearest]
-        angle = np.arctan2(np.cross(p, target) @ axis, p @ target - (p @ axis) * (target @ axis))
-        rest = rotation_about(axis, angle) @ rest
-        turned = rotation_about(axis, angle) @ p
-        return np.asarray(rotation_between(turned, target) @ rest)
-    return np.asarray(rotation_between(positions[nearest], target) @ rest)
+    nearest = int(apart.argmin())
+    return np.asarray(rotation_between(positions[nearest], target) @ rotations[nearest])
+
+
+def _one_axis_rest(
+    rotations: Array, positions: Array, slow: Mask, axis: Array, target: Array, s: RestSettings
+) -> Array:
+    """Turn the samples nearest in azimuth about the axis, average them, tilt onto the cone."""
+    azimuth = np.arctan2(
+        np.cross(positions, target) @ axis,
+        positions @ target - (positions @ axis) * (target @ axis),
+    )
+    usable = slow if slow.sum() >= FEWEST else np.ones(len(positions), dtype=bool)
+    nearest = np.abs(azimuth[usable]).min()
+    chosen = usable & (np.abs(azimuth) <= nearest + np.deg2rad(s.radius))
+    turned = rotation_about(axis, azimuth[chosen])
+    rest = mean_rotation(turned @ rotations[chosen])
+    directions = (turned @ positions[chosen][..., None])[..., 0].mean(axis=0)
+    direction = directions / np.linalg.norm(directions)
+    return np.asarray(rotation_between(direction, target) @ rest)
+
+
+def _angle_between(points: Array, direction: Array) -> Array:
+    """Return the angles to a direction in rad, (n, 3) → (n,)."""
+    across = np.linalg.norm(np.cross(points, direction), axis=-1)
+    return np.asarray(np.arctan2(across, points @ direction))
 
 
 def paper_rest(rotations: Array, positions: Array, target: Array) -> Array:
     """Return the orientation of the one sample nearest to the target, (3, 3), as the paper does."""
-    return np.asarray(rotations[int(np.nanargmax(positions @ target))])
+    return np.asarray(rotations[int(np.argmax(positions @ target))])

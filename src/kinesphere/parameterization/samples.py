@@ -24,6 +24,8 @@ class JointSamples:
     """Runs of frames in which the limb moves, every frame of them seen."""
     rate: float
     """Hz."""
+    long_axis: Array
+    """(3,) unit vector in the child."""
 
     def with_phases(self, phases: tuple[Phase, ...]) -> "JointSamples":
         """Return the same samples with other movement phases."""

@@ -5,11 +5,14 @@ from itertools import combinations
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinesphere.data import Array
 from kinesphere.geometry.rotations import mean_rotation, rotation_log
-from kinesphere.parameterization.samples import JointSamples
+from kinesphere.parameterization.samples import JointSamples, Phase
 from kinesphere.parameterization.settings import AxesSettings
+
+Labels = NDArray[np.intp]
 
 SAME = np.cos(np.deg2rad(25.0))  # a phase within 25° of an axis moves about it
 MANY_PHASES = 40  # all pairs of the heaviest so many are tried as a start
@@ -120,3 +123,34 @@ def moving_positions(samples: JointSamples) -> Array:
     """Return the positions of all phases one after another, (n, 3)."""
     parts = [samples.positions[start:stop] for start, stop in samples.phases]
     return np.concatenate(parts) if parts else np.empty((0, 3))
+
+
+@dataclass(frozen=True, eq=False)
+class Swing:
+    """Rotation of a limb about its mean in one phase, without what it turns about itself."""
+
+    vectors: Array
+    """(n, 3) rad, rotation vectors, across the limb's mean direction."""
+    direction: Array
+    """(3,) mean direction of the limb."""
+
+    def about(self, axes: Array) -> Array:
+        """Return how much of the movement each axis explains, (n_axes, 3) → (n_axes,) rad²."""
+        across = axes - np.outer(axes @ self.direction, self.direction)
+        across /= np.maximum(np.linalg.norm(across, axis=1), 1e-9)[:, None]
+        return np.asarray(((self.vectors @ across.T) ** 2).sum(axis=0))
+
+
+def phase_swing(samples: JointSamples, phase: Phase) -> Swing:
+    """Return the swing of one phase."""
+    rotations = samples.rotations[slice(*phase)]
+    w = rotation_log(rotations @ mean_rotation(rotations).T)
+    p = samples.positions[slice(*phase)].mean(axis=0)
+    p /= max(float(np.linalg.norm(p)), 1e-9)
+    return Swing(w - np.outer(w @ p, p), p)
+
+
+def phase_labels(samples: JointSamples, axes: Array) -> Labels:
+    """Return which axis, (n_axes, 3), each phase moves about most, (n_phases,)."""
+    labels = [int(phase_swing(samples, phase).about(axes).argmax()) for phase in samples.phases]
+    return np.array(labels, dtype=np.intp)

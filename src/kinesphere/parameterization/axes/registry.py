@@ -8,6 +8,7 @@ from kinesphere.parameterization.axes.em import em, em_restarts
 from kinesphere.parameterization.axes.fit import AxesMethod
 from kinesphere.parameterization.axes.pca import pca
 from kinesphere.parameterization.axes.phase_log_pca import phase_log_pca
+from kinesphere.parameterization.axes.refinement import refine_axes
 from kinesphere.parameterization.axes.sara import sara
 from kinesphere.parameterization.axes.small_circle import small_circle
 from kinesphere.parameterization.axes.universal_joint import universal_joint
@@ -25,7 +26,13 @@ AXES: Mapping[str, AxesMethod] = {
     "universal-joint": universal_joint,
 }
 
+BY_ORIENTATION = frozenset({"phase-log-pca", "sara"})
+"""Methods that whole orientations serve, hence twist disturbs."""
+
 
 def find_axes(samples: JointSamples, n_axes: int, settings: AxesSettings) -> Array:
     """Return up to ``n_axes`` axes by the method the settings name, (n_found, 3) unit vectors."""
-    return AXES[settings.method](samples, n_axes, settings)
+    axes = AXES[settings.method](samples, n_axes, settings)
+    if settings.refine and settings.method in BY_ORIENTATION and len(axes):
+        return refine_axes(samples, axes)
+    return axes
