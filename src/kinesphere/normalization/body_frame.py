@@ -38,28 +38,28 @@ def lateral_frames(to_right: Array, upward: Array) -> Array:
     return np.stack([np.cross(y, z), y, z], axis=-1)
 
 
-def plane_frames(joints: Array, up: Array, trunk: Array) -> Array:
+def plane_frames(joints: Array, vertical: Array, trunk: Array) -> Array:
     """Return body frames whose front may yet be their back.
 
     The frontal plane is the best plane through the joints; the transverse plane's normal is the
-    projection of up into it, which is what minimizes the angle between the two (paper, section
-    3). Where the plane lies level, the vertical is the longer side of the smallest rectangle around
-    the joints. Either way it points from the trunk's bottom to its top where that is known: a body
-    upside down keeps its head on top.
+    projection of up into it, which is what minimizes the angle between the two (paper, section 3).
+    Where the plane lies level, the longer side of the smallest rectangle around the joints takes
+    the place of up, with the head's end on top as far as the trunk is known.
 
     Parameters
     ----------
     joints : (n, n_joints, 3) m
         NaN is left out; at least three are needed.
-    up : (3,)
-        Unit vector.
+    vertical : (n, 3)
+        Unit vectors: up, or along a trunk that does not stand.
     trunk : (n, 3) m
         From the bottom of the trunk to its top; NaN where unknown.
     """
     centres, axes, _ = fit_planes(joints)
     normal = axes[:, :, 2]
-    y = up - (normal @ up)[:, None] * normal
-    level = np.abs(normal @ up) > _ACROSS
+    across = (normal * vertical).sum(axis=1, keepdims=True)
+    y = vertical - across * normal
+    level = np.abs(across[:, 0]) > _ACROSS
     if level.any():
         basis = axes[level][:, :, :2]
         flat = np.einsum("fjk,fki->fji", joints[level] - centres[level][:, None], basis)

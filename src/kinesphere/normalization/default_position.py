@@ -7,12 +7,13 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.geometry.planes import fit_planes, smallest_rectangles
 from kinesphere.normalization.anatomy import without_side
-from kinesphere.normalization.samples import Samples
+from kinesphere.normalization.samples import UP, Samples
 from kinesphere.normalization.settings import NormalizationSettings
 
-UP = np.array([0.0, 1.0, 0.0])
-"""The world's up (docs/conventions.md)."""
+JOINTS_OF_A_PLANE = 4
+"""Any three joints lie in a plane, whatever the body does."""
 
+_FARTHEST = 90.0  # deg beyond which no angle costs more: upside down is as bad as lying
 _FAST = 4.0  # most that speed may cost: whoever never stands still is judged by posture
 _T_RATIO = 0.85  # height over arm span between the outermost joints of a T-pose (wrists, ankles)
 
@@ -49,7 +50,7 @@ def posture_cost(samples: Samples, settings: NormalizationSettings) -> PositionC
     speed = joint_speeds(samples)
     cost = np.zeros(len(samples.frames))
     for name, angle in angles.items():
-        cost += _term(angle, scales[name])
+        cost += _term(np.minimum(angle, _FARTHEST), scales[name])
     cost += _term(plane / span, settings.plane_distance)
     cost += np.minimum(_term(speed / span, settings.speed), _FAST)
     terms = {**angles, "plane_distance_mm": 1e3 * plane, "speed_mm_per_s": 1e3 * speed}
@@ -80,7 +81,7 @@ def paper_cost(samples: Samples, settings: NormalizationSettings) -> PositionCos
     slow = ~(speed > settings.speed * span / 2)  # an unknown speed is no reason against a frame
     if slow.any():
         cost = np.where(slow, cost, np.inf)
-    cost = np.where(seen.sum(axis=1) >= 4, cost, np.inf)
+    cost = np.where(seen.sum(axis=1) >= JOINTS_OF_A_PLANE, cost, np.inf)
     terms = {
         "plane_distance_mm": 1e3 * np.sqrt(variances[:, 2]),
         "rectangle_ratio": ratio,
@@ -91,13 +92,18 @@ def paper_cost(samples: Samples, settings: NormalizationSettings) -> PositionCos
 
 
 def posture_angles(samples: Samples, template: str) -> dict[str, Array]:
-    """Return what the posture cost looks at, name → (n,) deg; only what the skeleton has."""
+    """Return what the posture cost looks at, name → (n,) deg; only what the skeleton has.
+
+    Limbs of a body that lies or stands on its head are measured against its own vertical: it may
+    take the default position all the same.
+    """
     limbs = samples.anatomy.limbs
     along = {
         name: samples.directions[:, i]
         for name, i in limbs.items()
         if np.isfinite(samples.anatomy.directions[i]).all()
     }
+    down = -samples.vertical
     arms = [a for n, a in along.items() if without_side(n) in ("upper_arm", "forearm")]
     thighs = [a for n, a in along.items() if without_side(n) == "thigh"]
     knees = [
@@ -109,11 +115,11 @@ def posture_angles(samples: Samples, template: str) -> dict[str, Array]:
     if np.isfinite(samples.trunk_lines).any():
         found["trunk_tilt_deg"] = _angle(samples.trunk_lines, UP)
     if arms:
-        to_down = np.stack([_angle(a, -UP) for a in arms])
+        to_down = np.stack([_angle(a, down) for a in arms])
         off = np.abs(to_down - 90) if template == "t-pose" else to_down
         found["arm_angle_deg"] = _largest(off)
     if thighs:
-        found["thigh_angle_deg"] = _largest(np.stack([_angle(a, -UP) for a in thighs]))
+        found["thigh_angle_deg"] = _largest(np.stack([_angle(a, down) for a in thighs]))
     if knees:
         found["knee_flexion_deg"] = _largest(np.stack([_angle(a, b) for a, b in knees]))
     return found
@@ -121,7 +127,7 @@ def posture_angles(samples: Samples, template: str) -> dict[str, Array]:
 
 def plane_distances(samples: Samples) -> Array:
     """Return the rms distance of the joints to their best plane, (n,) m; 0 below four joints."""
-    if samples.joints.shape[1] < 4:
+    if samples.joints.shape[1] < JOINTS_OF_A_PLANE:
         return np.zeros(len(samples.frames))
     distance: Array = np.sqrt(fit_planes(samples.joints)[2][:, 2])
     return distance

@@ -5,7 +5,7 @@ from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
-from kinesphere.data import Array, Json
+from kinesphere.data import Array, Json, Mask
 from kinesphere.errors import AmbiguousFacing, BadSetting
 from kinesphere.normalization.anatomy import without_side
 from kinesphere.normalization.samples import Samples
@@ -16,6 +16,7 @@ Facing: TypeAlias = Literal[
 """Where the body faces in its default position, in the world; or the one witness to believe."""
 
 _WEIGHTS = {"feet": 1.0, "knees": 0.5, "walking": 0.5, "elbows": 0.25}
+_KNEE, _ELBOW = ("thigh", "shank"), ("upper_arm", "forearm")
 _FLEXED = np.deg2rad(20.0)  # below this a joint centre a little off its place outvotes the knee
 _WALKS = 0.25  # spans a second; slower than that people shuffle in any direction
 _LOW = 0.25  # share of the body's height; joints below it may be ankles
@@ -54,7 +55,7 @@ class Verdict:
 def find_facing(
     samples: Samples,
     bodies: Array,
-    chosen: Array,
+    chosen: Mask,
     best: int,
     *,
     named: bool,
@@ -67,7 +68,7 @@ def find_facing(
     samples
     bodies : (n, 3, 3)
         Proposed ``world_from_body`` of every sample, carried by the body's own limb.
-    chosen : (n,) of bool
+    chosen : (n,)
         Samples that show the default position.
     best
         The one that shows it best.
@@ -89,8 +90,8 @@ def find_facing(
         name: witness
         for name, witness in (
             ("feet", _feet(samples, bodies, chosen)),
-            ("knees", _hinges(samples, bodies, "thigh", "shank", sign=-1.0)),
-            ("elbows", _hinges(samples, bodies, "upper_arm", "forearm", sign=1.0)),
+            ("knees", _hinges(samples, bodies, _knees(samples, chosen), "knees", bends=-1.0)),
+            ("elbows", _hinges(samples, bodies, _named(samples, _ELBOW), "elbows", bends=1.0)),
             ("walking", _walking(samples, bodies)),
         )
         if witness is not None
@@ -99,31 +100,39 @@ def find_facing(
     voices = sum(witness.weight * witness.score for witness in witnesses.values())
     score = voices / total if total > 0 else 0.0
     said = ", ".join(f"{name} {witness.score:+.2f}" for name, witness in witnesses.items())
-    if facing in ("names", *_WEIGHTS) or facing is None:
-        if facing in _WEIGHTS:
-            if facing not in witnesses or abs(witnesses[facing].score) < _LEAST:
-                raise AmbiguousFacing(
-                    f"no front from the {facing} here; what tells: {said or 'nothing'}"
-                )
-            turn, decided_by = witnesses[facing].score < 0, str(facing)
-        elif named:
-            turn, decided_by = False, "names"
-        elif facing == "names":
-            raise AmbiguousFacing(
-                "no pair of left and right limbs is named, so names cannot tell the front"
-            )
-        elif abs(score) >= _LEAST:
-            turn, decided_by = score < 0, max(witnesses, key=lambda n: witnesses[n].weight)
-        else:
-            raise AmbiguousFacing(
-                "nothing tells front from back: no pair of limbs is named left and right, and "
-                f"feet, flexed knees and elbows and the walk say {said or 'nothing'}; "
-                "pass facing, e.g. '+x' for the world direction the person faces while standing"
-            )
-    else:
-        turn, decided_by = _against(bodies[best], facing), f"user ({facing})"
+    turn, decided_by = _decide(witnesses, score, said, bodies[best], named=named, facing=facing)
     warnings = _objections(turn, decided_by, score, said, named=named)
     return Verdict(turn, decided_by, witnesses, warnings)
+
+
+def _decide(
+    witnesses: dict[str, Witness],
+    score: float,
+    said: str,
+    body: Array,
+    *,
+    named: bool,
+    facing: Facing | None,
+) -> tuple[bool, str]:
+    """Return whether to turn round, and who said so."""
+    if facing is not None and facing[0] in "+-":
+        return _against(body, facing), f"user ({facing})"
+    if facing in _WEIGHTS:
+        if facing not in witnesses or abs(witnesses[facing].score) < _LEAST:
+            raise AmbiguousFacing(f"no front from the {facing}; what tells: {said or 'nothing'}")
+        return witnesses[facing].score < 0, str(facing)
+    if named:
+        return False, "names"
+    if facing == "names":
+        raise AmbiguousFacing("no name tells left from right, so names cannot tell the front")
+    if abs(score) < _LEAST:
+        raise AmbiguousFacing(
+            "nothing tells front from back: no limb is named left or right, and feet, flexed knees "
+            f"and elbows and the walk say {said or 'nothing'}; pass facing, e.g. '+x' for the "
+            "world direction the person faces while standing"
+        )
+    agreeing = [n for n, witness in witnesses.items() if witness.score * score > 0]
+    return score < 0, ", ".join(agreeing)
 
 
 def _objections(
@@ -157,7 +166,7 @@ def _against(body: Array, facing: str) -> bool:
     return along < 0
 
 
-def _feet(samples: Samples, bodies: Array, chosen: Array) -> Witness | None:
+def _feet(samples: Samples, bodies: Array, chosen: Mask) -> Witness | None:
     """Feet point forward in the default position."""
     scores = []
     for limb in feet_of(samples, chosen):
@@ -170,11 +179,12 @@ def _feet(samples: Samples, bodies: Array, chosen: Array) -> Witness | None:
     return _mean(np.concatenate(scores), _WEIGHTS["feet"]) if scores else None
 
 
-def feet_of(samples: Samples, chosen: Array) -> list[int]:
+def feet_of(samples: Samples, chosen: Mask) -> list[int]:
     """Return the limbs that are feet: by name, else low ends of chains that point level."""
     anatomy = samples.anatomy
     named = [i for name, i in anatomy.limbs.items() if without_side(name) == "foot"]
-    if named or any(without_side(name) != name for name in anatomy.limbs):
+    sided = any(without_side(name) != name for name in anatomy.limbs)
+    if named or sided or not anatomy.skeleton.joints:
         return named
     height = np.nanmedian(samples.joints[chosen][:, :, 1], axis=0)
     low = np.nanmin(height) + _LOW * (np.nanmax(height) - np.nanmin(height))
@@ -189,16 +199,30 @@ def feet_of(samples: Samples, chosen: Array) -> list[int]:
     return found
 
 
-def _hinges(samples: Samples, bodies: Array, upper: str, lower: str, sign: float) -> Witness | None:
+def _named(samples: Samples, limbs: tuple[str, str]) -> list[tuple[int, int]]:
+    """Return the limbs above and below a hinge, for each side that has both."""
+    at = samples.anatomy.limbs
+    sides = [(at.get(side + limbs[0]), at.get(side + limbs[1])) for side in ("left_", "right_")]
+    return [(above, below) for above, below in sides if above is not None and below is not None]
+
+
+def _knees(samples: Samples, chosen: Mask) -> list[tuple[int, int]]:
+    """Return thighs and shanks: by name, else the two limbs before a foot."""
+    if named := _named(samples, _KNEE):
+        return named
+    parents = samples.anatomy.skeleton.parents
+    shanks = [int(parents[foot]) for foot in feet_of(samples, chosen)]
+    return [(int(parents[shank]), shank) for shank in shanks if shank > 0 and parents[shank] > 0]
+
+
+def _hinges(
+    samples: Samples, bodies: Array, limbs: list[tuple[int, int]], name: str, bends: float
+) -> Witness | None:
     """Knees bend the shank backward, elbows the forearm forward; only where they are bent."""
-    limbs = samples.anatomy.limbs
     scores, weights = [], []
-    for side in ("left_", "right_"):
-        if side + upper not in limbs or side + lower not in limbs:
-            continue
-        above = samples.directions[:, limbs[side + upper]]
-        below = samples.directions[:, limbs[side + lower]]
-        axis = sign * np.cross(above, below)
+    for upper, lower in limbs:
+        above, below = samples.directions[:, upper], samples.directions[:, lower]
+        axis = bends * np.cross(above, below)
         sine = np.linalg.norm(axis, axis=1)
         angle = np.arctan2(sine, (above * below).sum(axis=1))
         bent = angle > _FLEXED  # False where NaN
@@ -206,11 +230,7 @@ def _hinges(samples: Samples, bodies: Array, upper: str, lower: str, sign: float
         weights.append(angle[bent] ** 2)
     if not scores:
         return None
-    return _mean(
-        np.concatenate(scores),
-        _WEIGHTS["knees" if upper == "thigh" else "elbows"],
-        np.concatenate(weights),
-    )
+    return _mean(np.concatenate(scores), _WEIGHTS[name], np.concatenate(weights))
 
 
 def _walking(samples: Samples, bodies: Array) -> Witness | None:

@@ -7,11 +7,9 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.errors import DegenerateMotion
 from kinesphere.normalization.body_frame import face_the_same_way, lateral_frames, plane_frames
-from kinesphere.normalization.default_position import UP
-from kinesphere.normalization.samples import Samples
+from kinesphere.normalization.default_position import JOINTS_OF_A_PLANE
+from kinesphere.normalization.samples import UP, Samples
 from kinesphere.normalization.settings import NormalizationSettings
-
-_JOINTS_OF_A_PLANE = 4  # any three lie in one, whatever the body does
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,15 +60,16 @@ def propose_bodies(
             "through the joints",
         )
     n_joints = samples.joints.shape[1]
-    if n_joints >= _JOINTS_OF_A_PLANE:
-        seen = np.isfinite(samples.joints).all(axis=2).sum(axis=1) >= _JOINTS_OF_A_PLANE
+    if n_joints >= JOINTS_OF_A_PLANE:
+        seen = np.isfinite(samples.joints).all(axis=2).sum(axis=1) >= JOINTS_OF_A_PLANE
         joints = np.where(seen[:, None, None], samples.joints, np.nan)
-        bodies = plane_frames(joints, UP, samples.trunk_lines)
-        sides = (roots @ across[..., None])[..., 0]
+        bodies = plane_frames(joints, samples.vertical, samples.trunk_lines)
+        sides = across if named else away_from_the_neck(samples)
+        sides = (roots @ sides[..., None])[..., 0]
         return Proposal(
             root_from_body=face_the_same_way(roots @ bodies, sides),
             method="plane",
-            named=named,
+            named=bool(np.isfinite(sides).any()),
             needs="four joints",
             warnings=warnings,
         )
@@ -109,3 +108,11 @@ def to_the_right(samples: Samples) -> Array:
     if np.isfinite(together).any():
         return together
     return max(lines, key=lambda line: np.isfinite(line).sum())
+
+
+def away_from_the_neck(samples: Samples) -> Array:
+    """Return a direction to the right from the shoulder of half a body, (n, 3) m, or NaN."""
+    neck = samples.joint("neck")
+    if "right_shoulder" in samples.anatomy.joints:
+        return samples.joint("right_shoulder") - neck
+    return neck - samples.joint("left_shoulder")

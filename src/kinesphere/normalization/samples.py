@@ -9,6 +9,11 @@ from numpy.typing import NDArray
 from kinesphere.data import Array, Motion
 from kinesphere.normalization.anatomy import Anatomy
 
+UP = np.array([0.0, 1.0, 0.0])
+"""The world's up (docs/conventions.md)."""
+
+_UPRIGHT = np.cos(np.deg2rad(45.0))  # of the trunk's tilt from which it no longer stands
+
 
 @dataclass(frozen=True, eq=False)
 class Samples:
@@ -76,6 +81,18 @@ class Samples:
         top = _first_known(self.pair_centre("shoulder"), self.joint("neck"))
         legs = hips - _first_known(self.pair_centre("ankle"), self.pair_centre("knee"))
         return _first_known(top - bottom, legs)
+
+    @cached_property
+    def vertical(self) -> Array:
+        """(n, 3) unit vectors: what the limbs of somebody standing would hang along.
+
+        The world's up, or the trunk's line where it is known to lie or to stand on its head.
+        """
+        length = np.linalg.norm(self.trunk_lines, axis=1, keepdims=True)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            along = self.trunk_lines / length
+        lies = along @ UP < _UPRIGHT  # False where the trunk is unknown
+        return np.where(lies[:, None], along, UP)
 
     def _joints_at(self, frames: NDArray[np.intp]) -> Array:
         few = Motion(

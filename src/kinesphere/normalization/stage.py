@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-import kinesphere
+from kinesphere import __version__
 from kinesphere.data import Array, Json, Mask, Motion, Step, settings_as_json
 from kinesphere.errors import DegenerateMotion
 from kinesphere.geometry.rotations import rotation_angle
@@ -12,6 +12,7 @@ from kinesphere.normalization.alignment import Alignment, align_limbs
 from kinesphere.normalization.averaging import robust_mean_rotations
 from kinesphere.normalization.body_frame import TURNED_ROUND
 from kinesphere.normalization.default_position import (
+    JOINTS_OF_A_PLANE,
     PositionCost,
     paper_cost,
     posture_angles,
@@ -25,7 +26,7 @@ from kinesphere.normalization.samples import Samples, take_samples
 from kinesphere.normalization.settings import NormalizationSettings
 
 _DEFAULTS = NormalizationSettings()
-_SHARE = 0.1  # of the best cost; where nothing is good, differences are worth less
+_SHARE, _MOST_SHARED = 0.1, 1.0  # of the best cost: where nothing is good, differences count less
 _WIDE = np.deg2rad(10.0)  # spread of the body frames from which the average is in doubt
 
 
@@ -70,7 +71,7 @@ def normalize(
     best = int(np.argmin(cost))
     chosen = np.arange(len(cost)) == best
     if settings.frames == "many" and not proposal.only_best:
-        chosen = cost <= cost[best] + position.margin + _SHARE * abs(cost[best])
+        chosen = cost <= cost[best] + position.margin + min(_SHARE * abs(cost[best]), _MOST_SHARED)
     in_root = proposal.root_from_body
     mean_body = robust_mean_rotations(in_root[chosen][:, None])[0]
     carried = samples.rotations[:, 0] @ mean_body
@@ -92,6 +93,8 @@ def normalize(
 def _position(
     samples: Samples, settings: NormalizationSettings
 ) -> tuple[PositionCost, tuple[str, ...]]:
+    if samples.joints.shape[1] < JOINTS_OF_A_PLANE:
+        return posture_cost(samples, settings), ()  # whatever is left of it: speed if nothing else
     if settings.position == "paper":
         return paper_cost(samples, settings), ()
     if posture_angles(samples, settings.template):
@@ -119,7 +122,7 @@ def _normalized(
         settings=settings_as_json(settings),
         findings=findings,
         warnings=warnings,
-        version=kinesphere.__version__,
+        version=__version__,
     )
     moved = propagate(motion, alignment.turns, shifts, alignment.along, lengths)
     return replace(moved, history=(*motion.history, step))
