@@ -24,6 +24,12 @@ def _hanging(out: float, forward: float) -> tuple[float, float, float]:
     return sin(f) * cos(o), -cos(f) * cos(o), -sin(o)
 
 
+def _treading(out: float, down: float) -> tuple[float, float, float]:
+    """Return the direction from a left ankle to the toes, ``out`` and ``down`` in deg."""
+    o, d = radians(out), radians(down)
+    return cos(d) * cos(o), -sin(d), -cos(d) * sin(o)
+
+
 _LEFT_ARM = (
     LimbPlan(
         name="left_upper_arm",
@@ -82,7 +88,7 @@ _LEFT_LEG = (
         joint="left_ankle",
         canonical=_AHEAD,
         length=0.115,
-        stands=(cos(radians(7)), 0.0, -sin(radians(7))),
+        stands=_treading(out=7, down=7),
         movements=(
             Movement("abduction", _UP, -20, 20, gait=(0, 4, 0.1)),
             Movement("dorsiflexion", _LATERAL, -35, 20, gait=(-3, 12, 0.6)),
@@ -113,6 +119,6 @@ HUMAN = BodyPlan(
     size=(1.73, 0.08),
     together=frozenset({"shoulder", "elbow", "ankle"}),
     stands_on=("left_shank", "right_shank", "left_foot", "right_foot"),
-    sole=0.039,
+    sole=0.025,
 )
 """Twelve limbs, eleven joints; the trunk, pelvis included, is the root."""

@@ -4,7 +4,13 @@ Places follow the marker placement guide of the CMU Graphics Lab (mocap.cs.cmu.e
 marker belongs to the limb whose bone it lies on, so the knee marker moves with the thigh (lateral
 epicondyle), the ankle marker with the shank, the shoulder marker with the trunk (acromion). The
 actor has no hands: wrist and finger markers move with the forearm.
+
+Where a limb points, at the end of a chain, only its markers can tell: the toe marker lies on the
+foot's long axis, the finger marker and the middle of the wrist markers on the forearm's, the middle
+of the head markers on the head's.
 """
+
+from itertools import chain
 
 import numpy as np
 
@@ -33,17 +39,23 @@ _LEFT: dict[str, tuple[str, float, Vector]] = {
     "UPA": ("left_upper_arm", 0.45, (0.005, 0.0, -0.032)),
     "ELB": ("left_upper_arm", 1.0, (-0.003, 0.0, -0.025)),
     "FRM": ("left_forearm", 0.40, (-0.005, 0.0, -0.026)),
-    "WRA": ("left_forearm", 0.97, (0.020, 0.0, 0.0)),
-    "WRB": ("left_forearm", 0.97, (-0.020, 0.0, -0.005)),
-    "FIN": ("left_forearm", 1.40, (0.005, 0.0, -0.015)),
+    "WRA": ("left_forearm", 0.98, (0.020, 0.0, 0.002)),
+    "WRB": ("left_forearm", 0.98, (-0.020, 0.0, -0.002)),
+    "FIN": ("left_forearm", 1.40, (0.0, 0.0, 0.0)),
     "THI": ("left_thigh", 0.50, (0.020, 0.0, -0.045)),
     "KNE": ("left_thigh", 1.0, (0.0, 0.0, -0.031)),
     "SHN": ("left_shank", 0.50, (0.015, 0.0, -0.030)),
     "ANK": ("left_shank", 1.0, (0.0, 0.0, -0.022)),
     "HEE": ("left_foot", 0.0, (-0.025, -0.015, 0.0)),
-    "TOE": ("left_foot", 0.85, (0.0, -0.012, 0.003)),
-    "MT5": ("left_foot", 0.65, (0.0, -0.022, -0.028)),
+    "TOE": ("left_foot", 0.90, (0.0, 0.0, 0.0)),
+    "MT5": ("left_foot", 0.65, (0.0, -0.010, -0.028)),
 }
+
+_CENTRED = (
+    *(((side + "TOE",), (side + "FIN",), (side + "WRA", side + "WRB")) for side in "LR"),
+    (("LFHD", "RFHD", "LBHD", "RBHD"),),
+)
+"""Markers whose middle lies on the long axis, wherever they are really stuck."""
 
 
 def cmu41_markers(rng: np.random.Generator, actor: Actor) -> dict[str, tuple[list[str], Array]]:
@@ -74,6 +86,11 @@ def cmu41_markers(rng: np.random.Generator, actor: Actor) -> dict[str, tuple[lis
         along = np.array([places[label][1] for label in labels]) - 0.5
         aside = np.array([places[label][2] for label in labels])
         aside = aside + _JITTER * np.clip(rng.normal(size=aside.shape), -2, 2)
+        across = np.eye(3) - np.outer(limb.long_axis, limb.long_axis)
+        for group in chain.from_iterable(_CENTRED):
+            rows = [m for m, label in enumerate(labels) if label in group]
+            if rows:
+                aside[rows] -= aside[rows].mean(axis=0) @ across
         bodies[name] = labels, limb.length * along[:, None] * limb.long_axis + actor.size * aside
     return bodies
 

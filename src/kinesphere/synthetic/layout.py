@@ -17,6 +17,7 @@ Placed: TypeAlias = dict[str, tuple[list[str], Array]]
 """Limb → labels and (n_markers, 3) m in the limb frame."""
 
 _SPREAD_M = (0.05, 0.10)  # rms distance of a body's markers from their centroid
+_SLACK = 1 + 1e-9
 _LEAST_WIDTH = 0.35  # of the second principal extent against the first: far from a line
 _LEAST_GAP = 0.35  # of the closest pair against the spread: two markers stay two
 
@@ -24,8 +25,9 @@ _LEAST_GAP = 0.35  # of the closest pair against the spread: two markers stay tw
 def marker_bodies(rng: np.random.Generator, actor: Actor) -> Placed:
     """Place a body of three to five markers at random on each limb.
 
-    The centroid lies anywhere about the limb's middle; on a limb that carries no other it lies on
-    the long axis, since there nothing but the markers tells where the limb points.
+    Its centroid lies anywhere about the limb's middle. On a limb that carries no other, nothing but
+    markers tells where it points: there the centroid and the marker farthest from the joint lie on
+    the long axis.
 
     Returns
     -------
@@ -36,11 +38,12 @@ def marker_bodies(rng: np.random.Generator, actor: Actor) -> Placed:
     bodies = {}
     for limb in actor.skeleton.limbs:
         n_markers = int(rng.integers(3, 6))
-        centre = rng.uniform(-0.2, 0.2) * limb.length * limb.long_axis
+        along = rng.uniform(-0.2, 0.2) * limb.length * limb.long_axis
         if limb.name in carriers:
-            centre = centre + rng.normal(scale=0.02, size=3)
-        labels = [f"{limb.name}{i + 1}" for i in range(n_markers)]
-        bodies[limb.name] = labels, centre + _scattered(rng, n_markers)
+            points = along + rng.normal(scale=0.02, size=3) + _scattered(rng, n_markers)
+        else:
+            points = _pointing(rng, n_markers, limb, along)
+        bodies[limb.name] = [f"{limb.name}{i + 1}" for i in range(n_markers)], points
     return bodies
 
 
@@ -49,11 +52,33 @@ def _scattered(rng: np.random.Generator, n_markers: int) -> Array:
     while True:
         points = rng.normal(size=(n_markers, 3))
         points -= points.mean(axis=0)
-        extents = np.linalg.svd(points, compute_uv=False)
-        gaps = np.linalg.norm(points[:, None] - points, axis=2)[np.triu_indices(n_markers, 1)]
-        spread = np.sqrt((points**2).sum(axis=1).mean())
-        if extents[1] > _LEAST_WIDTH * extents[0] and gaps.min() > _LEAST_GAP * spread:
-            return np.asarray(points * rng.uniform(*_SPREAD_M) / spread)
+        points *= rng.uniform(*_SPREAD_M) / np.sqrt((points**2).sum(axis=1).mean())
+        if _is_body(points):
+            return points
+
+
+def _pointing(rng: np.random.Generator, n_markers: int, limb: Limb, along: Array) -> Array:
+    """Draw points whose centroid, and the farthest of which from the joint, tell the long axis."""
+    while True:
+        points = _scattered(rng, n_markers)
+        aside = points - np.outer(points @ limb.long_axis, limb.long_axis)
+        last = int(np.argmax(points @ limb.long_axis))
+        others = np.arange(n_markers) != last
+        points[others] += aside[last] / (n_markers - 1)
+        points[last] -= aside[last]
+        from_joint = points + along + limb.length / 2 * limb.long_axis
+        if np.linalg.norm(from_joint, axis=1).argmax() == last and _is_body(points):
+            return np.asarray(points + along)
+
+
+def _is_body(points: Array) -> bool:
+    extents = np.linalg.svd(points, compute_uv=False)
+    gaps = np.linalg.norm(points[:, None] - points, axis=2)[np.triu_indices(len(points), 1)]
+    spread = np.sqrt((points**2).sum(axis=1).mean())
+    fits = _SPREAD_M[0] <= spread * _SLACK and spread <= _SPREAD_M[1] * _SLACK
+    return bool(
+        fits and extents[1] > _LEAST_WIDTH * extents[0] and gaps.min() > _LEAST_GAP * spread
+    )
 
 
 def _twin(label: str) -> str:

@@ -13,6 +13,7 @@ from kinesphere.geometry.rotations import rotation_about, rotation_log
 _STEPS = 12
 _RIDGE = 1e-12  # keeps a singular pose from throwing the step away
 _LARGEST_STEP = 0.3  # rad, of one angle in one step
+_CONVERGED = 1e-11  # rad
 
 
 def angles_about_axes(
@@ -60,4 +61,6 @@ def angles_about_axes(
         normal = transposed @ columns + _RIDGE * np.eye(n_axes + 1)
         step = np.linalg.solve(normal, transposed @ missing[..., None])[..., 0]
         found = found + np.clip(step, -_LARGEST_STEP, _LARGEST_STEP)
+        if not np.nanmax(np.abs(step), initial=0.0) > _CONVERGED:
+            break
     return found[:, :n_axes], found[:, n_axes]
