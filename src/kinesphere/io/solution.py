@@ -1,0 +1,145 @@
+"""A solved folder: everything one run found out, in the files that others use."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from kinesphere.data import Recording, Solution
+from kinesphere.errors import BadSetting, UnreadableFile
+from kinesphere.io.atomic import replacing_directory
+from kinesphere.io.bvh import write_bvh
+from kinesphere.io.c3d import read_c3d, write_c3d
+from kinesphere.io.opensim import write_osim
+from kinesphere.io.opensim_joints import opensim_name
+from kinesphere.io.opensim_motion import write_mot
+from kinesphere.io.parameters_csv import write_parameters
+from kinesphere.io.skeleton_json import write_skeleton
+from kinesphere.io.solution_arrays import read_solution_arrays, write_solution_arrays
+from kinesphere.io.summary import write_summary
+from kinesphere.io.trc import write_trc
+
+ARRAYS = "solution.npz"
+RECORDING = "recording.c3d"
+FILES = (
+    RECORDING,
+    "skeleton.json",
+    "parameters.csv",
+    "motion.bvh",
+    "motion.trc",
+    "motion.mot",
+    "motion.osim",
+    ARRAYS,
+    "summary.json",
+)
+"""What ``write_solution`` writes by itself."""
+_OTHERS = ("report.html", "motion.glb")
+"""What may stand beside them."""
+_C3D = "c3d"
+
+
+def write_solution(
+    solution: Solution,
+    directory: str | Path,
+    extra: Mapping[str, str | bytes] | None = None,
+) -> None:
+    """Write a solved folder; it appears whole or not at all.
+
+    Parameters
+    ----------
+    directory
+        A new or empty folder, or a solved one, which is replaced.
+    extra
+        Further files: name → text or bytes (``{"report.html": page}``).
+
+    Raises
+    ------
+    KinesphereError
+        If the folder holds files that are not a solution's, or cannot be written.
+    """
+    extra = dict(extra or {})
+    for name in extra:
+        if Path(name).name != name or name in FILES:
+            raise BadSetting(f"{name!r} cannot be added: a plain name was expected, and a new one")
+    ours = {*FILES, *_OTHERS, *extra}
+
+    def is_ours(folder: Path) -> bool:
+        return {entry.name for entry in folder.iterdir()} <= ours
+
+    recording, skeleton = solution.recording, solution.skeleton
+    details = {k: None if k == _C3D else v for k, v in recording.details.items()}
+    bare = replace(solution, recording=replace(recording, details=details))
+    with replacing_directory(directory, is_ours) as folder:
+        write_c3d(_with_joint_centres(solution), folder / RECORDING)
+        write_skeleton(skeleton, folder / "skeleton.json")
+        write_parameters(solution.parameters, folder / "parameters.csv")
+        write_bvh(solution.motion, folder / "motion.bvh")
+        write_trc(_model_markers(solution), folder / "motion.trc")
+        write_mot(solution.parameters, folder / "motion.mot")
+        write_osim(skeleton, folder / "motion.osim")
+        write_solution_arrays(bare, folder / ARRAYS)
+        write_summary(solution, folder / "summary.json")
+        for name, content in extra.items():
+            raw = content.encode() if isinstance(content, str) else content
+            (folder / name).write_bytes(raw)
+
+
+def read_solution(directory: str | Path) -> Solution:
+    """Read a solved folder back, arrays to the last bit and history included.
+
+    Everything comes from ``solution.npz``, but for what a C3D file needs to be written back
+    without loss, which comes from ``recording.c3d``; the other files are for other programs.
+
+    Raises
+    ------
+    UnreadableFile
+        If this is no folder, none of ours, or a file in it is missing or damaged.
+    """
+    directory = Path(directory)
+    if not directory.is_dir():
+        found = "a file" if directory.exists() else "not there"
+        raise UnreadableFile(f"{directory} is {found}; a solved folder was expected")
+    if not (directory / ARRAYS).is_file():
+        raise UnreadableFile(f"{directory} holds no {ARRAYS}: it is no solved folder")
+    if missing := [name for name in FILES if not (directory / name).is_file()]:
+        raise UnreadableFile(f"{directory} is not whole: {', '.join(missing)} missing")
+    solution = read_solution_arrays(directory / ARRAYS)
+    recording = solution.recording
+    if _C3D not in recording.details:
+        return solution
+    details = {**recording.details, _C3D: read_c3d(directory / RECORDING).details[_C3D]}
+    return replace(solution, recording=replace(recording, details=details))
+
+
+def _with_joint_centres(solution: Solution) -> Recording:
+    """Return the recording with the joint centres of the motion among its points."""
+    recording = solution.recording
+    names = tuple(
+        name if name not in recording.labels else f"{name}_centre"
+        for name in solution.skeleton.joint_names
+    )
+    centres = solution.motion.joint_centres()
+    residuals = recording.residuals
+    if residuals is not None:
+        residuals = np.hstack([residuals, np.full(centres.shape[:2], np.nan)])
+    return replace(
+        recording,
+        markers=np.hstack([recording.markers, centres]),
+        labels=recording.labels + names,
+        residuals=residuals,
+    )
+
+
+def _model_markers(solution: Solution) -> Recording:
+    """Return the markers the OpenSim model has, as it names them, in the world it lives in."""
+    recording = solution.recording
+    owned = {label for limb in solution.skeleton.limbs for label in limb.markers}
+    at = [i for i, label in enumerate(recording.labels) if label in owned]
+    return replace(
+        recording,
+        markers=recording.markers[:, at],
+        labels=tuple(opensim_name(recording.labels[i]) for i in at),
+        residuals=None,
+        world_from_file=np.eye(3),
+    )

@@ -1,0 +1,45 @@
+"""``summary.json``: per stage what was found, how good it is, how long it took."""
+
+from pathlib import Path
+from typing import Any
+
+from kinesphere import __version__
+from kinesphere.data import Solution
+from kinesphere.io.json_files import write_json
+
+SUMMARY_FORMAT = "kinesphere-summary-1"
+
+
+def summary_of(solution: Solution) -> dict[str, Any]:
+    """Return what ``summary.json`` holds; names end in their unit."""
+    motion = solution.motion
+    return {
+        "format": SUMMARY_FORMAT,
+        "version": __version__,
+        "model": solution.model_name,
+        "n_frames": motion.n_frames,
+        "rate_hz": motion.rate,
+        "duration_s": motion.n_frames / motion.rate,
+        "first_frame": motion.first_frame,
+        "n_markers": solution.recording.n_markers,
+        "limbs": solution.skeleton.limb_names,
+        "joints": solution.skeleton.joint_names,
+        "warnings": solution.warnings,
+        "stages": [
+            {
+                "name": step.name,
+                "version": step.version,
+                "seconds": solution.seconds.get(step.name),
+                "settings": step.settings,
+                "findings": step.findings,
+                "warnings": step.warnings,
+            }
+            for step in solution.history
+        ],
+        "seconds": solution.seconds,
+    }
+
+
+def write_summary(solution: Solution, path: str | Path) -> None:
+    """Write ``summary.json``; what is not known is null."""
+    write_json(summary_of(solution), path)
