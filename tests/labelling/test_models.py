@@ -14,7 +14,8 @@ LIMBS = {
         for limb in ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
     ),
 }
-AXES = dict(neck=2, lumbar=2, shoulder=2, elbow=1, wrist=2, hip=2, knee=1, ankle=2)
+TWO_AXES, ONE_AXIS = ("neck", "lumbar", "shoulder", "wrist", "hip", "ankle"), ("elbow", "knee")
+AXES = dict.fromkeys(TWO_AXES, 2) | dict.fromkeys(ONE_AXIS, 1)
 HALVES = {"left": "right", "right": "left"}
 
 

@@ -1,0 +1,186 @@
+"""One thing made wrong at a time: it is found, and named with marker and frame; nothing else is."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kinesphere.data import Recording
+from kinesphere.quality import check_recording, find_gaps
+
+FIRST = 101  # number of the first stored frame, so that indices and frame numbers differ
+
+
+@pytest.fixture
+def clean(walker, rng):
+    """Return a walker without gaps; noise keeps every marker moving."""
+    markers = walker.markers.copy()
+    frames = np.arange(walker.n_frames)
+    for column in range(walker.n_markers):
+        known = walker.seen[:, column]
+        for axis in range(3):
+            values = markers[:, column, axis]
+            values[:] = np.interp(frames, frames[known], values[known])
+    markers += rng.normal(scale=1e-4, size=markers.shape)
+    return replace(walker, markers=markers, first_frame=FIRST)
+
+
+def spoiled(recording, label, frames, values):
+    markers = recording.markers.copy()
+    markers[frames, recording.labels.index(label)] = values
+    return replace(recording, markers=markers)
+
+
+def only(findings):
+    assert len(findings) == 1, [finding.what for finding in findings]
+    return findings[0]
+
+
+def test_a_clean_recording_has_nothing_to_say(clean):
+    assert check_recording(clean) == ()
+
+
+def test_a_long_gap_is_named_with_marker_frame_and_length(clean):
+    found = only(check_recording(spoiled(clean, "LTOE", slice(10, 41), np.nan)))
+    assert (found.rule, found.severity, found.markers) == ("gap", "warning", ("LTOE",))
+    assert found.frame == FIRST + 10
+    assert dict(found.numbers)["longest_s"] == pytest.approx(31 / 60, abs=1e-4)
+    assert dict(found.numbers)["missing_share"] == pytest.approx(31 / 47, abs=1e-4)
+    assert "LTOE is missing in 66.0% of the frames, longest from frame 111 on" in found.what
+
+
+def test_a_moderate_gap_is_a_note_and_a_short_one_nothing(clean):
+    assert only(check_recording(spoiled(clean, "C7", slice(5, 15), np.nan))).severity == "note"
+    assert check_recording(spoiled(clean, "C7", slice(5, 7), np.nan)) == ()
+
+
+def test_frames_without_anybody_are_told_once(clean):
+    markers = clean.markers.copy()
+    markers[20:30] = np.nan
+    found = only(check_recording(replace(clean, markers=markers)))
+    assert (found.rule, found.frame) == ("empty-frames", FIRST + 20)
+
+
+def test_a_marker_never_seen(clean):
+    found = only(check_recording(spoiled(clean, "RKNE", slice(None), np.nan)))
+    assert (found.rule, found.markers) == ("never-seen", ("RKNE",))
+
+
+def test_missing_written_as_zero(clean):
+    found = check_recording(spoiled(clean, "RELB", slice(12, 17), 0.0))
+    assert {f.rule for f in found} == {"at-zero", "jump"}  # leaping there and back is a jump, too
+    zero = next(f for f in found if f.rule == "at-zero")
+    assert (zero.markers, zero.frame, dict(zero.numbers)["frames"]) == (("RELB",), FIRST + 12, 5)
+
+
+def test_a_marker_that_never_moves(clean):
+    found = only(check_recording(spoiled(replace(clean, rate=40.0), "STRN", slice(None), 1.0)))
+    assert (found.rule, found.markers) == ("constant", ("STRN",))
+
+
+def test_a_statue_is_no_broken_recording(statue):
+    assert check_recording(statue) == ()
+
+
+def test_two_labels_on_one_marker(clean):
+    other = clean.markers[:, clean.labels.index("LANK")]
+    found = only(check_recording(spoiled(clean, "LHEE", slice(None), other + 1e-4)))
+    assert (found.rule, set(found.markers)) == ("coincident", {"LANK", "LHEE"})
+    assert found.frame == FIRST
+
+
+def test_passing_by_is_not_coincident(clean):
+    other = clean.markers[3, clean.labels.index("LANK")]
+    assert not any(
+        f.rule == "coincident" for f in check_recording(spoiled(clean, "LHEE", 3, other))
+    )
+
+
+def test_a_jump_is_named_with_its_frame_and_speed(clean):
+    up = clean.markers[20, clean.labels.index("LWRA")] + [0, 0.6, 0]
+    found = only(check_recording(spoiled(clean, "LWRA", 20, up)))
+    assert (found.rule, found.markers, found.frame) == ("jump", ("LWRA",), FIRST + 20)
+    assert dict(found.numbers)["jumps"] == 2  # there and back
+    assert dict(found.numbers)["fastest_m_per_s"] == pytest.approx(36, abs=3)  # 0.6 m · 60 Hz
+    assert "jumps 2 times, first into frame 121" in found.what
+
+
+def test_the_same_step_at_a_low_rate_is_no_jump(clean):
+    up = clean.markers[20, clean.labels.index("LWRA")] + [0, 0.6, 0]
+    assert check_recording(replace(spoiled(clean, "LWRA", 20, up), rate=12.0)) == ()
+
+
+def test_unlabelled_points_may_come_and_go(clean):
+    labels = tuple("*7" if label == "LTOE" else label for label in clean.labels)
+    ghost = replace(spoiled(clean, "LTOE", slice(10, 41), np.nan), labels=labels)
+    assert check_recording(ghost) == ()
+
+
+@pytest.mark.parametrize(("factor", "shown"), [(1e3, "e+03"), (1e-3, "0.00")])
+def test_a_giant_or_a_dwarf_has_the_wrong_unit(clean, factor, shown):
+    found = [
+        f
+        for f in check_recording(replace(clean, markers=clean.markers * factor))
+        if f.rule == "unit"
+    ]
+    assert shown in only(found).what
+
+
+def test_a_cloud_as_large_as_a_town_has_the_wrong_unit(rng):
+    cloud = Recording(rng.normal(size=(30, 4, 3)) * 1e3, ("a", "b", "c", "d"), 60.0)
+    assert "unit" in {f.rule for f in check_recording(cloud)}
+    assert "unit" not in {
+        f.rule for f in check_recording(replace(cloud, markers=cloud.markers / 1e3))
+    }
+
+
+def test_one_frame_is_said(clean):
+    found = only(check_recording(replace(clean, markers=clean.markers[:1])))
+    assert (found.rule, found.frame) == ("one-frame", FIRST)
+
+
+@pytest.mark.parametrize(
+    ("shape", "what"),
+    [((0, 3), "no frames"), ((4, 0), "no markers"), ((4, 3), "no marker is seen in any of the 4")],
+)
+def test_nothing_there_is_an_error_and_the_only_one(shape, what):
+    empty = Recording(np.full((*shape, 3), np.nan), ("a", "b", "c")[: shape[1]], 60.0)
+    found = only(check_recording(empty))
+    assert found.severity == "error"
+    assert what in found.what
+
+
+def test_the_worst_comes_first(clean):
+    worse = spoiled(spoiled(clean, "C7", slice(5, 15), np.nan), "RKNE", slice(None), np.nan)
+    assert [f.severity for f in check_recording(worse)] == ["warning", "note"]
+
+
+def test_findings_are_json(clean):
+    found = only(check_recording(spoiled(clean, "LTOE", slice(10, 41), np.nan)))
+    assert json.loads(json.dumps(found.as_json()))["missing_share"] == pytest.approx(0.6596)
+
+
+def naive_gaps(seen):
+    """Walk down every column, one frame after the other."""
+    gaps = []
+    for column in range(seen.shape[1]):
+        start = None
+        for frame in range(len(seen) + 1):
+            gone = frame < len(seen) and not seen[frame, column]
+            if gone and start is None:
+                start = frame
+            if not gone and start is not None:
+                gaps.append((column, start, frame, start > 0 and frame < len(seen)))
+                start = None
+    return gaps
+
+
+@pytest.mark.parametrize("share", [0.0, 0.2, 0.7, 1.0])
+def test_gaps_are_those_one_finds_by_walking(rng, share):
+    markers = rng.normal(size=(23, 5, 3))
+    markers[rng.random((23, 5)) < share] = np.nan
+    recording = Recording(markers, tuple("abcde"), 60.0)
+    gaps = find_gaps(recording)
+    assert [tuple(gap) for gap in gaps] == naive_gaps(recording.seen)
+    assert sum(gap.n_frames for gap in gaps) == (~recording.seen).sum()
