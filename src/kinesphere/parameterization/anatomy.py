@@ -82,16 +82,20 @@ def named_axes(axes: Array, name: str) -> tuple[Array, list[int]]:
     body = body_axes(name)
     if body is None:
         return axes, list(range(len(axes)))
-    cosines = axes @ body.T
-    free = np.abs(cosines)
-    matches: list[tuple[int, int]] = []
-    for _ in range(len(axes)):
-        i, j = (int(at) for at in np.unravel_index(int(free.argmax()), free.shape))
-        matches.append((j, i))
-        free[i, :] = free[:, j] = -1
-    matches.sort()
+    cosines = axes @ body[: len(axes)].T
+    matches = sorted(_matches(cosines))
     signed = [axes[i] if cosines[i, j] >= 0 else -axes[i] for j, i in matches]
     return np.array(signed).reshape(-1, 3), [i for _, i in matches]
+
+
+def nominal_axes(name: str, axes: Array) -> Array | None:
+    """Return the body axis each axis is matched to, (n_axes, 3); None if nobody named the joint."""
+    body = body_axes(name)
+    if body is None:
+        return None
+    return body[
+        [j for j, _ in sorted(_matches(axes @ body[: len(axes)].T), key=lambda pair: pair[1])]
+    ]
 
 
 def substitute_axes(name: str, n_axes: int, direction: Array) -> Array:
@@ -117,3 +121,14 @@ def substitute_axes(name: str, n_axes: int, direction: Array) -> Array:
         order = np.argsort(np.abs(direction), kind="stable")
         body = np.eye(3)[order]
     return body[:n_axes]
+
+
+def _matches(cosines: Array) -> list[tuple[int, int]]:
+    """Return (column, row) pairs, closest first, each row and column once."""
+    free = np.abs(cosines)
+    pairs: list[tuple[int, int]] = []
+    for _ in range(min(free.shape)):
+        i, j = (int(at) for at in np.unravel_index(int(free.argmax()), free.shape))
+        pairs.append((j, i))
+        free[i, :] = free[:, j] = -1
+    return pairs

@@ -24,7 +24,7 @@ class AxesQuality:
     labels: Labels
     """(n_phases,) which axis a phase moves about."""
     ranges: Array
-    """(n_axes,) rad, range of motion about each axis in its phases."""
+    """(n_axes,) rad, arc that the limb's direction covers about each axis in its phases."""
     conditioning: Array
     """(n_axes,) ratio of the two largest eigenvalues of the pooled rotation scatter."""
     explained: float
@@ -67,7 +67,9 @@ def assess_axes(samples: JointSamples, axes: Array, find: Finder) -> AxesQuality
             azimuth = np.arctan2(
                 np.cross(middle, p) @ axis, p @ middle - (p @ axis) * (middle @ axis)
             )
-            ranges[k] = float(np.diff(np.percentile(azimuth, PERCENTILES))[0])
+            # as an arc on the joint sphere: a full turn on a tiny circle is no movement
+            arc = np.sqrt(max(0.0, 1 - heights[k] ** 2))
+            ranges[k] = arc * float(np.diff(np.percentile(azimuth, PERCENTILES))[0])
     return AxesQuality(
         labels=labels,
         ranges=ranges,
@@ -94,7 +96,9 @@ def halves_disagreement(samples: JointSamples, axes: Array, labels: Labels, find
     return worst
 
 
-def reasons_to_doubt(quality: AxesQuality, axes: Array, s: AxesSettings) -> list[str]:
+def reasons_to_doubt(
+    quality: AxesQuality, axes: Array, nominal: Array | None, s: AxesSettings
+) -> list[str]:
     """Return why these are not the axes of main movements, each a clause; or nothing.
 
     Parameters
@@ -102,6 +106,8 @@ def reasons_to_doubt(quality: AxesQuality, axes: Array, s: AxesSettings) -> list
     quality
         Of ``axes``.
     axes : (n_axes, 3)
+    nominal : (n_axes, 3), optional
+        Where anatomy has the axes, in the same order.
     s
         The limits.
     """
@@ -119,6 +125,10 @@ def reasons_to_doubt(quality: AxesQuality, axes: Array, s: AxesSettings) -> list
             f"rotation about one axis at a time explains only {quality.explained:.0%} "
             "of the movement"
         )
+    if nominal is not None:
+        off = np.arccos(np.clip(np.abs((axes * nominal).sum(axis=1)), 0, 1))
+        if (farthest := np.rad2deg(off.max())) > s.farthest:
+            doubts.append(f"an axis is {farthest:.0f}° from where this joint can have one")
     for i in range(1, len(axes)):
         for j in range(i):
             angle = np.rad2deg(np.arccos(min(1.0, abs(float(axes[i] @ axes[j])))))

@@ -11,6 +11,7 @@ from kinesphere.parameterization.anatomy import (
     declared_n_axes,
     joint_kind,
     named_axes,
+    nominal_axes,
     substitute_axes,
 )
 from kinesphere.parameterization.angles import JointAngles, solve_angles
@@ -48,7 +49,8 @@ class JointFit:
     uncertainty: Array
     """(n_axes,) rad; NaN where unknown."""
     findings: Mapping[str, Json]
-    warnings: tuple[str, ...]
+    doubts: tuple[str, ...]
+    """What speaks against axes from the movement, each a clause."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +119,7 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
     declared = declared_n_axes(view.name, parse_counts(options.counts))
     n_axes = declared or observed or 2
 
-    axes, quality, doubts = _movement_axes(view.samples, n_axes, options)
+    axes, quality, doubts = _movement_axes(view, n_axes, options)
     if len(axes) < n_axes or (doubts and options.on_doubt == "body"):
         source: AxesSource = "body"
         axes = substitute_axes(view.name, n_axes, view.gravity)[::-1]
@@ -130,16 +132,17 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         uncertainty = quality.uncertainty[order]
     if joint_kind(view.name) is None:
         axes = _first_excursion_positive(view, axes, rest, settings)
+    rate = view.samples.rate
     findings: dict[str, Json] = {
         "n_axes": n_axes,
         "n_axes_by_data": observed,
         "axes_method": options.method,
         "axes_source": source,
         "doubts": list(doubts),
+        "phases_s": [[a / rate, b / rate] for a, b in view.samples.phases],
         **_quality_findings(quality),
     }
-    warnings = _warnings(view, source, doubts, options, declared, observed)
-    return JointFit(axes, rest, source, uncertainty, findings, tuple(warnings))
+    return JointFit(axes, rest, source, uncertainty, findings, tuple(doubts))
 
 
 def solve_joint(
@@ -158,7 +161,7 @@ def solve_joint(
 
 
 def _movement_axes(
-    samples: JointSamples, n_axes: int, options: AxesSettings
+    view: JointView, n_axes: int, options: AxesSettings
 ) -> tuple[Array, AxesQuality | None, list[str]]:
     """Return axes from the movement, how good they are, and what speaks against them."""
     if options.method == "body":
@@ -167,6 +170,7 @@ def _movement_axes(
     def find(half: JointSamples) -> Array:
         return find_axes(half, n_axes, options)
 
+    samples = view.samples
     pure = samples.with_phases(main_movements(samples, options))
     axes = find(pure)
     if len(axes) == n_axes:
@@ -174,11 +178,12 @@ def _movement_axes(
     else:
         axes = find(samples)
     if len(axes) == 0:
-        return axes, None, ["the limb hardly moves"]
+        unseen = not view.calibration.any()
+        return axes, None, ["it is never seen" if unseen else "the limb hardly moves"]
     quality = assess_axes(samples, axes, find)
     if len(axes) < n_axes:
         return axes, quality, [f"only {len(axes)} of {n_axes} main movements is there"]
-    return axes, quality, reasons_to_doubt(quality, axes, options)
+    return axes, quality, reasons_to_doubt(quality, axes, nominal_axes(view.name, axes), options)
 
 
 def _movement_rest(
@@ -280,31 +285,3 @@ def _quality_findings(quality: AxesQuality | None) -> dict[str, Json]:
         "explained": quality.explained,
         "halves_disagreement_deg": [float(h) if np.isfinite(h) else None for h in halves],
     }
-
-
-def _warnings(
-    view: JointView,
-    source: AxesSource,
-    doubts: list[str],
-    options: AxesSettings,
-    declared: int | None,
-    observed: int | None,
-) -> list[str]:
-    warnings: list[str] = []
-    name = view.name
-    if not view.calibration.any():
-        return [f"{name}: never seen; its axes are those of the body frame"]
-    if doubts and source == "body":
-        warnings.append(f"{name}: {'; '.join(doubts)}. Its axes are those of the body frame")
-    elif doubts:
-        warnings.append(f"{name}: doubtful axes, for {'; '.join(doubts)}")
-    if view.samples.phases and not view.movement.valley:
-        warnings.append(
-            f"{name}: nothing parts movement from rest; a threshold of "
-            f"{np.rad2deg(view.movement.threshold):.1f} deg/s was taken"
-        )
-    if declared == 2 and observed == 1 and source == "movement":
-        warnings.append(f"{name}: has two axes, but moves about one only")
-    if options.method == "small-circle" and not view.twist_known.any():
-        warnings.append(f"{name}: nothing tells its twist; axes are from positions alone")
-    return warnings

@@ -132,6 +132,14 @@ class AxesSettings:
     smallest_angle: float = setting(
         20.0, "two axes closer than this are one", unit="deg", low=0.0, high=90.0
     )
+    farthest: float = setting(
+        50.0,
+        "angle to the body's axis, from which on the axis of a named joint is doubted",
+        unit="deg",
+        low=0.0,
+        high=90.0,
+        source="an arm held still while the shoulder turns looks like an elbow 75-90 deg off",
+    )
     joining_angle: float = setting(
         15.0,
         "delta of Direction Joining",

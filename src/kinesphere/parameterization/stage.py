@@ -6,7 +6,6 @@ import numpy as np
 
 from kinesphere import __version__
 from kinesphere.data import (
-    Array,
     Codes,
     Joint,
     JointFlag,
@@ -21,13 +20,19 @@ from kinesphere.data import (
 from kinesphere.errors import BadSetting
 from kinesphere.geometry.chain import joint_rotations
 from kinesphere.parameterization.angles import JointAngles
-from kinesphere.parameterization.joint import JointFit, fit_joint, solve_joint, view_joint
+from kinesphere.parameterization.joint import (
+    JointFit,
+    JointView,
+    fit_joint,
+    solve_joint,
+    view_joint,
+)
 from kinesphere.parameterization.measures import (
     lever,
     mid_point_residuals,
-    number,
     paper_measures,
 )
+from kinesphere.parameterization.report import result_findings, stage_warnings
 from kinesphere.parameterization.settings import ParameterizationSettings
 
 TORN = 0.02  # m, joints closer together than this are never called dislocated
@@ -79,7 +84,8 @@ def parameterize(
     world = np.array(motion.rotations)  # a twist nobody knows is taken out of it, outward
     joints: list[Joint] = []
     findings: dict[str, Json] = {}
-    warnings: list[str] = []
+    views: dict[str, JointView] = {}
+    fits: dict[str, JointFit] = {}
     for j, joint in enumerate(skeleton.joints):
         limb, parent = skeleton.limbs[j + 1], skeleton.parents[j + 1]
         rotations = np.swapaxes(world[:, parent], -1, -2) @ world[:, j + 1]
@@ -106,18 +112,18 @@ def parameterize(
                 axes_uncertainty=fit.uncertainty,
             )
         )
-        warnings += fit.warnings
+        views[joint.name], fits[joint.name] = view, fit
         findings[joint.name] = {
             **fit.findings,
             "moving_s": float(view.movement.moving.sum() / motion.rate),
-            "phases_s": [[a / motion.rate, b / motion.rate] for a, b in view.samples.phases],
             "threshold_deg_s": float(np.rad2deg(view.movement.threshold)),
             "threshold_from_valley": view.movement.valley,
-            **_result_findings(residuals[:, j], solved, flags[:, j]),
+            **result_findings(residuals[:, j], twists[:, j], flags[:, j]),
             **paper_measures(rotations, rebuilt, limb.long_axis, mid_point),
         }
+    warnings = stage_warnings(views, fits, settings.axes.method)
     if reuse is not None and not set(reuse.joint_names) & set(skeleton.joint_names):
-        warnings.append("the solution whose axes were to be reused has no joint of the same name")
+        warnings += ("the solution whose axes were to be reused has no joint of the same name",)
     step = Step(
         "parameterization",
         {
@@ -126,7 +132,7 @@ def parameterize(
             "reuse": reuse is not None,
         },
         {"joints": findings},
-        tuple(warnings),
+        warnings,
         __version__,
     )
     return Parameters(
@@ -208,21 +214,3 @@ def _torn(motion: Motion, j: int) -> Mask:
     spread = 1.4826 * float(np.median(np.abs(apart[known] - usual)))
     with np.errstate(invalid="ignore"):
         return np.asarray(apart > usual + max(OUTLYING * spread, TORN))
-
-
-def _result_findings(residuals: Array, solved: JointAngles, flags: Codes) -> dict[str, Json]:
-    known = residuals * 1e3
-    seen = (flags & JointFlag.UNSEEN) == 0
-
-    def share(flag: JointFlag) -> float | None:
-        return float(((flags[seen] & flag) > 0).mean()) if seen.any() else None
-
-    return {
-        "seen": float(seen.mean()) if len(seen) else None,
-        "residual_mean_mm": number(known, np.mean),
-        "residual_median_mm": number(known, np.median),
-        "residual_95_mm": number(known, lambda v: np.percentile(v, 95)),
-        "twist_rms_deg": number(np.rad2deg(solved.twists) ** 2, lambda v: np.sqrt(v.mean())),
-        "unreachable": share(JointFlag.UNREACHABLE),
-        "singular": share(JointFlag.SINGULAR),
-    }

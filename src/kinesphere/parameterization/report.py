@@ -1,0 +1,83 @@
+"""What a person is told about the parameterization of all joints: few sentences, not many."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from kinesphere.data import Array, Codes, JointFlag, Json, Mask
+from kinesphere.parameterization.joint import JointFit, JointView
+from kinesphere.parameterization.measures import number
+
+
+def stage_warnings(
+    views: Mapping[str, JointView], fits: Mapping[str, JointFit], method: str
+) -> tuple[str, ...]:
+    """Return what was guessed or is doubtful, joints of one complaint in one sentence.
+
+    Parameters
+    ----------
+    views, fits
+        By joint name.
+    method
+        The axis method asked for; body axes that were asked for are no complaint.
+    """
+    warnings: list[str] = []
+    if method != "body":
+        for source, sentence in (
+            ("body", "the main movements do not tell these axes, the body frame's serve instead"),
+            ("movement", "these axes are doubtful, kept because that was asked for"),
+        ):
+            doubted = [
+                f"{name} ({'; '.join(fit.doubts)})"
+                for name, fit in fits.items()
+                if fit.source == source and fit.doubts
+            ]
+            if doubted:
+                warnings.append(f"{sentence}: {', '.join(doubted)}")
+    no_valley = [
+        name
+        for name, view in views.items()
+        if not view.movement.valley and view.samples.phases and fits[name].source == "movement"
+    ]
+    if no_valley:
+        threshold = np.rad2deg(views[no_valley[0]].movement.threshold)
+        warnings.append(
+            f"nothing parts movement from rest at {', '.join(no_valley)}: "
+            f"{threshold:.1f} deg/s was taken as the limit"
+        )
+    one_only = [
+        name
+        for name, fit in fits.items()
+        if fit.source == "movement"
+        and len(fit.axes) == 2
+        and fit.findings.get("n_axes_by_data") == 1
+    ]
+    if one_only:
+        warnings.append(f"two axes were asked for, one is seen to move, at {', '.join(one_only)}")
+    untwisted = [name for name, view in views.items() if _never(view.twist_known, view.rotations)]
+    if untwisted:
+        warnings.append(f"nothing tells the twist at {', '.join(untwisted)}")
+    return tuple(warnings)
+
+
+def result_findings(residuals: Array, twists: Array, flags: Codes) -> dict[str, Json]:
+    """Return residuals, twist and flagged shares of one joint, arrays (n_frames,), m and rad."""
+    seen = (flags & JointFlag.UNSEEN) == 0
+
+    def share(flag: JointFlag) -> float | None:
+        return float(((flags[seen] & flag) > 0).mean()) if seen.any() else None
+
+    return {
+        "seen": float(seen.mean()) if len(seen) else None,
+        "residual_mean_mm": number(residuals * 1e3, np.mean),
+        "residual_median_mm": number(residuals * 1e3, np.median),
+        "residual_95_mm": number(residuals * 1e3, lambda v: float(np.percentile(v, 95))),
+        "twist_rms_deg": number(np.rad2deg(twists) ** 2, lambda v: float(np.sqrt(v.mean()))),
+        "unreachable": share(JointFlag.UNREACHABLE),
+        "singular": share(JointFlag.SINGULAR),
+    }
+
+
+def _never(known: Mask, rotations: Array) -> bool:
+    seen = np.isfinite(rotations[:, 0, 0])
+    return bool(seen.any() and not known[seen].any())
