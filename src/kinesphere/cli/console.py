@@ -1,13 +1,15 @@
 """How the command line speaks: tables on stdout, progress and errors on stderr, JSON alone."""
 
 import json
+import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from rich import box
 from rich.console import Console
+from rich.padding import Padding
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
@@ -38,8 +40,17 @@ def on_one_line(text: str) -> str:
 
 
 def print_json(found: Any) -> None:
-    """Print what a machine reads: one JSON object, NaN as null."""
-    sys.stdout.write(json.dumps(found, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+    """Print what a machine reads: one JSON object; what is not known (NaN) is null."""
+    text = json.dumps(_nan_as_null(found), indent=2, allow_nan=False, ensure_ascii=False)
+    sys.stdout.write(text + "\n")
+
+
+def _nan_as_null(found: Any) -> Any:
+    if isinstance(found, Mapping):
+        return {str(key): _nan_as_null(value) for key, value in found.items()}
+    if isinstance(found, list | tuple):
+        return [_nan_as_null(value) for value in found]
+    return None if isinstance(found, float) and not math.isfinite(found) else found
 
 
 def print_title(console: Console, title: str, aside: str = "") -> None:
@@ -65,13 +76,31 @@ def print_table(
     console: Console, header: Sequence[str], rows: Iterable[Sequence[str]], right: str = ""
 ) -> None:
     """Print a table; ``right`` has an ``r`` at each column of numbers, e.g. ``"lrr"``."""
-    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1), pad_edge=False, header_style="dim")
+    table = Table(
+        box=box.SIMPLE_HEAD,
+        padding=(0, 2, 0, 0),
+        pad_edge=False,
+        header_style="dim",
+        show_edge=False,
+    )
     for i, name in enumerate(header):
         justify: Any = "right" if right[i : i + 1] == "r" else "left"
         table.add_column(Text(name), justify=justify, overflow="fold")
     for row in rows:
         table.add_row(*(Text(plain(cell)) for cell in row))
     console.print(table)
+
+
+def print_setting(
+    console: Console, name: str, value: str, allowed: str, lines: Sequence[str]
+) -> None:
+    """Print a setting, what it may be, and below it what it does."""
+    head = Text(f"{name} = ")
+    head.append(value, style="bold cyan")
+    head.append(f"   {allowed}", style="dim")
+    console.print(head)
+    for line in lines:
+        console.print(Padding(Text(line, style="dim"), (0, 0, 0, 4), expand=False))
 
 
 def print_warnings(console: Console, warnings: Sequence[str]) -> None:

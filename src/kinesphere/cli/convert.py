@@ -13,10 +13,10 @@ def convert(
     target: Annotated[Path, typer.Argument(metavar="OUT", help="Its suffix says the format.")],
     as_json: JsonOption = False,
 ) -> None:
-    """Turn a file into another format, losslessly where both can hold what is in it.
+    """Turn a file into another format.
 
-    A recording goes to [bold].c3d[/bold], [bold].trc[/bold] or [bold].csv[/bold]; a solved folder
-    also to [bold].bvh[/bold].
+    Nothing is lost where both can hold it. A recording goes to [bold].c3d[/bold],
+    [bold].trc[/bold] or [bold].csv[/bold], a solved folder also to [bold].bvh[/bold].
 
     Example: [bold]kinesphere convert walk.c3d walk.trc[/bold]
     """

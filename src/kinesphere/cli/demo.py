@@ -21,10 +21,13 @@ def demo(
     seed: Annotated[int, typer.Option("--seed", help="Which actor.", min=0)] = 1,
     as_json: JsonOption = False,
 ) -> None:
-    """Solve a synthetic actor whose truth is known, and show how near the line comes to it.
+    """Solve a synthetic actor and compare with the truth.
+
+    Takes some seconds; the first time about a minute, while kernels compile.
 
     Example: [bold]kinesphere demo -o demo[/bold]
     """
+    import dataclasses
     import time
 
     import numpy as np
@@ -51,8 +54,8 @@ def demo(
         report = write_solved(solution, output, "Synthetic actor")
     summary = {"file": f"synthetic actor {seed}", **describe_solution(solution)}
     if as_json:
-        summary["truth"] = [as_json_row(row) for row in rows]
-        print_json({**summary, "output": str(output)})
+        truth = [dataclasses.asdict(row) for row in rows]
+        print_json({**summary, "output": str(output), "truth": truth})
         return
     show_solution(summary, solution)
     show_truth(rows)
@@ -88,14 +91,3 @@ def show_truth(rows: "Sequence[TruthRow]") -> None:
     print_title(console, "Truth against estimate", "errors; the actor knows what is true")
     header = ("stage", "what", "number", "typical", "worst", "at")
     print_table(console, header, table, "llrrrl")
-
-
-def as_json_row(row: "TruthRow") -> dict[str, object]:
-    """Return one comparison as JSON holds it."""
-    import math
-    from dataclasses import asdict
-
-    return {
-        key: None if isinstance(value, float) and not math.isfinite(value) else value
-        for key, value in asdict(row).items()
-    }

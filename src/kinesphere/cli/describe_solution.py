@@ -13,26 +13,25 @@ from kinesphere.cli.console import (
 )
 from kinesphere.cli.stages import stage_in_words
 from kinesphere.data import Solution, TopologicalModel
+from kinesphere.io.summary import summary_of
 from kinesphere.report import JointRow, condensed, joint_rows, rms, unique
 
 
 def describe_solution(solution: Solution) -> dict[str, Any]:
-    """Return what was found stage by stage: units in the names, everything JSON can hold."""
+    """Return ``summary.json`` and the figures of every joint; units are in the names."""
     motion, parameters = solution.motion, solution.parameters
     return {
         "kind": "solution",
-        "model": solution.model_name,
-        "n_frames": motion.n_frames,
-        "rate_hz": motion.rate,
-        "limbs": list(solution.skeleton.limb_names),
-        "limb_residual_rms_mm": _number(rms(motion.residuals) * 1e3),
-        "rebuilt_residual_rms_mm": _number(rms(parameters.residuals) * 1e3),
+        **summary_of(solution),
+        "warnings": unique(solution.warnings),
+        "limb_residual_rms_mm": rms(motion.residuals) * 1e3,
+        "rebuilt_residual_rms_mm": rms(parameters.residuals) * 1e3,
         "seen": float(motion.seen.mean()),
-        "joints": [
+        "joint_findings": [
             {
                 "name": joint.name,
-                "residual_mm": _number(joint.residual * 1e3),
-                "range_of_motion_deg": _number(np.rad2deg(joint.range_of_motion)),
+                "residual_mm": joint.residual * 1e3,
+                "range_of_motion_deg": float(np.rad2deg(joint.range_of_motion)),
                 "observability": joint.observability,
                 "n_axes": joint.n_axes,
                 "axes_from": joint.axes_source,
@@ -40,16 +39,6 @@ def describe_solution(solution: Solution) -> dict[str, Any]:
             }
             for joint in solution.skeleton.joints
         ],
-        "stages": [
-            {
-                "name": step.name,
-                "seconds": solution.seconds.get(step.name),
-                "findings": dict(step.findings),
-                "warnings": list(step.warnings),
-            }
-            for step in solution.history
-        ],
-        "warnings": unique(solution.warnings),
     }
 
 
@@ -141,7 +130,3 @@ def show_model(summary: dict[str, Any]) -> None:
             )
         )
     print_table(console, ("segment", "joint", "markers", "shared"), rows)
-
-
-def _number(value: float) -> float | None:
-    return round(float(value), 6) if value == value else None

@@ -4,8 +4,10 @@ from pathlib import Path
 
 from kinesphere.cli.options import BadArgument
 from kinesphere.data import Recording, Solution
-from kinesphere.io import read, replacing, write_solution
+from kinesphere.io import read, write_solution
 from kinesphere.report import report_html
+
+REPORT = "report.html"
 
 
 def read_recording(path: Path) -> Recording:
@@ -28,9 +30,5 @@ def read_solved(path: Path) -> Solution:
 
 def write_solved(solution: Solution, directory: Path, title: str) -> Path:
     """Write a solved folder with its report; return where the report is."""
-    html = report_html(solution, title)
-    write_solution(solution, directory)
-    report = directory / "report.html"
-    with replacing(report) as beside:
-        beside.write_text(html, encoding="utf-8")
-    return report
+    write_solution(solution, directory, {REPORT: report_html(solution, title)})
+    return directory / REPORT

@@ -11,7 +11,7 @@ from kinesphere.cli.options import BadArgument, JsonOption, SubjectOption
 def info(
     file: Annotated[
         Path,
-        typer.Argument(help="A recording (C3D, TRC), a solved folder or a model.", metavar="FILE"),
+        typer.Argument(help="A recording (C3D, TRC), a solved folder or a model."),
     ],
     subject: SubjectOption = None,
     as_json: JsonOption = False,

@@ -9,9 +9,7 @@ from kinesphere.cli.options import JsonOption
 
 
 def model(
-    labelled: Annotated[
-        list[Path], typer.Argument(metavar="LABELLED...", help="Recordings of one marker layout.")
-    ],
+    labelled: Annotated[list[Path], typer.Argument(help="Recordings of one marker layout.")],
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="MODEL.json", help="Where the model goes.")
     ],

@@ -15,11 +15,11 @@ def settings(
     settings_file: SettingsOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Print every setting of every stage: value, unit, range, what it does.
+    """Show every setting: value, unit, range, what it does.
 
     Example: [bold]kinesphere settings axes[/bold]
     """
-    from kinesphere.cli.console import print_json, print_table, print_title, stdout
+    from kinesphere.cli.console import print_json, print_setting, print_title, stdout
     from kinesphere.cli.options import settings_from_options
 
     rows = setting_rows(settings_from_options(assignments, settings_file))
@@ -32,17 +32,12 @@ def settings(
     console = stdout()
     for name, entries in shown.items():
         print_title(console, name)
-        table = [
-            (
-                f"{name}.{entry['key']}",
-                _value(entry["value"]),
-                entry["unit"],
-                _allowed(entry),
-                entry["doc"] + (f" [{entry['source']}]" if stage and entry["source"] else ""),
-            )
-            for entry in entries
-        ]
-        print_table(console, ("setting", "value", "unit", "allowed", "what it does"), table)
+        for entry in entries:
+            value = " ".join(part for part in (_value(entry["value"]), entry["unit"]) if part)
+            lines = [entry["doc"]]
+            if stage is not None and entry["source"]:
+                lines.append(f"source: {entry['source']}")
+            print_setting(console, f"{name}.{entry['key']}", value, _allowed(entry), lines)
 
 
 def setting_rows(values: Any) -> dict[str, list[dict[str, Any]]]:
@@ -67,7 +62,9 @@ def setting_rows(values: Any) -> dict[str, list[dict[str, Any]]]:
 def _value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
-    return "none" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+    if value is None or value == "":
+        return "none" if value is None else '""'
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _allowed(entry: dict[str, Any]) -> str:

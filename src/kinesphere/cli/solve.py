@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def solve(
-    file: Annotated[Path, typer.Argument(help="A labelled recording.", metavar="FILE")],
+    file: Annotated[Path, typer.Argument(help="A labelled recording.")],
     output: Annotated[
         Path,
         typer.Option("-o", "--output", metavar="DIR", help="Folder for everything that is found."),
@@ -55,7 +55,7 @@ def solve(
     settings_file: SettingsOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Find skeleton, motion and joint parameters of a labelled recording.
+    """Measure skeleton, motion and joint parameters.
 
     Example: [bold]kinesphere solve walk.c3d --calibration 0:60 -o walk[/bold]
     """

@@ -54,10 +54,10 @@ def _orientation(found: dict[str, Any], _: dict[str, Any]) -> str:
 
 
 def _skeleton(_: dict[str, Any], summary: dict[str, Any]) -> str:
-    joints = summary["joints"]
+    joints = summary["joint_findings"]
     kinds = Counter(joint["observability"] for joint in joints)
     counted = ", ".join(f"{n} {kind}" for kind, n in kinds.most_common())
-    known = [joint for joint in joints if joint["residual_mm"] is not None]
+    known = [joint for joint in joints if np.isfinite(joint["residual_mm"])]
     text = (
         f"{len(summary['limbs'])} limbs fit to {_mm(summary['limb_residual_rms_mm'])} rms; "
         f"{len(joints)} joint centres: {counted}"
@@ -85,7 +85,7 @@ def _normalization(found: dict[str, Any], _: dict[str, Any]) -> str:
 
 
 def _parameterization(_: dict[str, Any], summary: dict[str, Any]) -> str:
-    sources = Counter(joint["axes_from"] for joint in summary["joints"])
+    sources = Counter(joint["axes_from"] for joint in summary["joint_findings"])
     said = {
         "movement": "by their own movements",
         "body": "of the body frame",
@@ -93,14 +93,14 @@ def _parameterization(_: dict[str, Any], summary: dict[str, Any]) -> str:
         "given": "given",
     }
     counted = ", ".join(f"{n} {said.get(str(s), str(s))}" for s, n in sources.most_common())
-    n_axes = sum(joint["n_axes"] for joint in summary["joints"])
+    n_axes = sum(joint["n_axes"] for joint in summary["joint_findings"])
     return (
         f"{n_axes} axes, joints: {counted}; limbs rebuilt to "
         f"{_mm(summary['rebuilt_residual_rms_mm'])} rms"
     )
 
 
-def _mm(value: float | None) -> str:
+def _mm(value: float) -> str:
     return number_in_words(value, "mm")
 
 

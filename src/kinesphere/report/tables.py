@@ -233,8 +233,8 @@ def _span(degrees: Array) -> str:
     known = degrees[np.isfinite(degrees)]
     if not len(known):
         return "–"
-    low, high = np.percentile(known, [5, 95])
-    return f"{low:.0f}° … {high:.0f}°"
+    low, high = (float(v) for v in np.percentile(known, [5, 95]))
+    return f"{round(low)}° … {round(high)}°"  # round() knows no -0
 
 
 def _mm(metres: float) -> str:

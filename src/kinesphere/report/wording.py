@@ -18,6 +18,8 @@ _UNITS = {
     "kb": "kB",
 }
 _LISTED = 6
+_LEAST = 0.001
+"""Whatever the unit, a smaller number is called smaller than this."""
 
 
 def finding_in_words(name: str, value: Json, listed: int = _LISTED) -> tuple[str, str]:
@@ -45,13 +47,13 @@ def number_in_words(value: float | None, unit: str = "", digits: int = 3) -> str
     size = abs(value)
     if isinstance(value, int) or (size >= 10 ** (digits - 1)):
         text = f"{value:.0f}"
-    elif size == 0:
-        text = "0"
+    elif size < _LEAST:
+        text = "0" if size == 0 else f"< {_LEAST}"
     else:
-        decimals = min(digits - 1 - math.floor(math.log10(size)), 6)
+        decimals = min(digits - 1 - math.floor(math.log10(size)), 3)
         text = f"{value:.{decimals}f}"
         if "." in text:
-            text = text.rstrip("0").rstrip(".") or "0"
+            text = text.rstrip("0").rstrip(".")
     gap = "" if unit in ("°", "%", "") else " "
     return f"{text}{gap}{unit}"
 

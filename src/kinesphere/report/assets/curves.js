@@ -74,7 +74,7 @@ class Chart {
       const k = Number(readout.dataset.series);
       const { array, series } = this.values(k);
       const v = k === 4 ? this.data.joint_residuals.at(this.index, frame) : array.at(series, frame);
-      const text = k === 4 ? `${v.toFixed(1)} mm` : `${Math.round(v) || 0}°`;
+      const text = k === 4 ? `${Math.max(0, v).toFixed(1)} mm` : `${Math.round(v) || 0}°`;
       readout.textContent = Number.isFinite(v) ? text : "–";
     });
   }

@@ -28,7 +28,7 @@ class HeatMap {
     this.cursor.style.opacity = x >= this.left - 1 ? 1 : 0;
   }
   colour(value) {
-    const share = Math.min(1, value / this.high);
+    const share = Math.max(0, Math.min(1, value / this.high));
     const stops = this.theme.heat;
     const at = share * (stops.length - 1);
     const i = Math.min(stops.length - 2, Math.floor(at));

@@ -94,7 +94,10 @@ async function start() {
       if (chart.visible) chart.point(toFrame(time));
     }
   }, { rootMargin: "200px" });
-  charts.forEach((chart) => watcher.observe(chart.element));
+  for (const chart of charts) {
+    chart.visible = chart.element.getBoundingClientRect().top < innerHeight + 200;
+    watcher.observe(chart.element);
+  }
   window.addEventListener("resize", redraw);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     Object.assign(theme, themeFromStyles());

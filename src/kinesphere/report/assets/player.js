@@ -6,9 +6,9 @@ class Player {
     this.camera = new Camera();
     this.show = { markers: true, bones: true, axes: false, frames: false, names: false };
     this.follow = true;
-    this.frame = 0;
+    this.frame = this.firstSeen();
     this.floor = this.findFloor();
-    this.home = this.centreAt(this.firstSeen()) || [0, 0.95, 0];
+    this.home = this.centreAt(this.frame) || [0, 0.95, 0];
     this.reset();
     this.listen();
     new ResizeObserver(() => this.draw()).observe(canvas);
@@ -59,13 +59,19 @@ class Player {
   }
 
   /* --- the hand on the camera --- */
-  reset(yaw = 0.72, pitch = 0.16) {
+  /* Angles are told from the person's own front, in the frame on view. */
+  reset(yaw = 0.6, pitch = 0.16) {
     this.camera.reset();
-    this.camera.yaw = yaw;
+    this.camera.yaw = this.frontYaw(this.frame) + yaw;
     this.camera.pitch = pitch;
     this.camera.distance = 2.05 * this.height();
     this.camera.target = this.home;
     this.draw();
+  }
+  frontYaw(frame) {
+    const root = this.pose(0, frame) || this.pose(0, this.firstSeen());
+    const anterior = root ? turned(root.quaternion, [1, 0, 0]) : [0, 0, 1];
+    return Math.atan2(anterior[0], anterior[2]);
   }
   listen() {
     const held = new Map();
