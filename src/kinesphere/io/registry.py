@@ -77,7 +77,8 @@ def write(obj: Any, path: str | Path) -> None:
     suffix = path.suffix.lower() if not path.is_dir() else ""
     for candidate in able:
         if suffix in candidate.suffixes:
-            return _function(candidate.writers[kind])(obj, path)
+            _function(candidate.writers[kind])(obj, path)
+            return
     possible = ", ".join(f"{f.suffixes[0] or 'a folder'} ({f.name})" for f in able)
     shown = f"suffix {suffix!r}" if suffix else "no suffix"
     raise UnknownFormat(f"{path}: {shown} names no format that holds a {kind}; known: {possible}")

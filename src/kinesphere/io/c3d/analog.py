@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Analog, Array
+from kinesphere.io.c3d.frames import as_doubles
 from kinesphere.io.c3d.layout import Layout
 from kinesphere.io.c3d.parameters import Section
 
@@ -58,7 +59,7 @@ def analog_from_samples(
 
 def raw_samples(layout: Layout, samples: NDArray[Any]) -> Array:
     """Return the converter's numbers, (n_samples, n_channels): words may be meant unsigned."""
-    raw = samples.astype(np.float64)
+    raw = as_doubles(samples)
     if _is_unsigned(layout.section) and not layout.is_float:
         raw = np.where(raw < 0, raw + 65536, raw)
     return raw

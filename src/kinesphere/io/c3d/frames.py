@@ -28,11 +28,8 @@ class Frames:
 def frames_from_bytes(content: bytes, layout: Layout) -> Frames:
     """Return the data section's numbers; ``layout`` has seen to it that they are all there."""
     stored = content[layout.start : layout.end]
-    numbers: NDArray[Any]
-    if layout.is_float:
-        numbers = layout.processor.floats(stored)
-    else:
-        numbers = layout.processor.words(stored)
+    processor = layout.processor
+    numbers: NDArray[Any] = (processor.floats if layout.is_float else processor.words)(stored)
     numbers = numbers.reshape(layout.n_frames, layout.words_per_frame)
     points, analog = np.split(numbers, [4 * layout.n_points], axis=1)
     points = points.reshape(layout.n_frames, layout.n_points, 4)
@@ -56,6 +53,12 @@ def bytes_from_frames(frames: Frames) -> bytes:
         axis=1,
     )
     return numbers.astype(numbers.dtype.newbyteorder("<"), copy=False).tobytes()
+
+
+def as_doubles(numbers: NDArray[Any]) -> Array:
+    """Return numbers of a file as float64; bit patterns that are no number become NaN."""
+    with np.errstate(invalid="ignore"):  # a signalling NaN would complain of being looked at
+        return numbers.astype(np.float64)
 
 
 def unseen(fourth: NDArray[Any]) -> Mask:

@@ -34,7 +34,8 @@ class Parameter:
         if self.kind == CHAR:
             return np.empty(0)
         dtype = {BYTE: "u1", WORD: "<i2", FLOAT: "<f4"}[self.kind]
-        return np.frombuffer(self.data, dtype).astype(np.float64)
+        with np.errstate(invalid="ignore"):  # a damaged float may be a signalling NaN
+            return np.frombuffer(self.data, dtype).astype(np.float64)
 
     @property
     def texts(self) -> tuple[str, ...]:
@@ -194,6 +195,13 @@ def float_list(name: str, values: ArrayLike) -> tuple[Parameter, ...]:
     return tuple(
         floats(_part(name, i), part, *part.shape[1:], len(part)) for i, part in enumerate(parts)
     )
+
+
+def word_list(name: str, values: ArrayLike) -> tuple[Parameter, ...]:
+    """Return whole numbers, (n,), as a parameter and continuations (``OFFSET2``…)."""
+    row = np.asarray(values)
+    parts = [row[i : i + MOST] for i in range(0, len(row), MOST)] or [row]
+    return tuple(words(_part(name, i), part, len(part)) for i, part in enumerate(parts))
 
 
 def text(name: str, value: str) -> Parameter:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Mask, Recording
-from kinesphere.io.c3d.frames import unseen
+from kinesphere.io.c3d.frames import as_doubles, unseen
 from kinesphere.io.c3d.source import Source
 
 
@@ -110,8 +110,8 @@ def restore(
     """
     known = [i for i, p in enumerate(points) if p.origin is not None]
     origins = [p.origin for p in points if p.origin is not None]
-    old_values = source.frames.points[rows][:, origins].astype(np.float64)
-    old = source.frames.fourth[rows][:, origins].astype(np.float64)
+    old_values = as_doubles(source.frames.points[rows][:, origins])
+    old = as_doubles(source.frames.fourth[rows][:, origins])
     if not source.layout.is_float:
         old_values *= source.layout.scale
     new, gone = fourth[:, known].astype(np.float64), gone[:, known]

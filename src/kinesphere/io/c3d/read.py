@@ -13,7 +13,13 @@ from kinesphere.data.history import Json
 from kinesphere.errors import UnreadableFile
 from kinesphere.io.c3d.analog import analog_from_samples
 from kinesphere.io.c3d.events import events_from_file, start_time
-from kinesphere.io.c3d.frames import Frames, frames_from_bytes, residuals_from_fourth, unseen
+from kinesphere.io.c3d.frames import (
+    Frames,
+    as_doubles,
+    frames_from_bytes,
+    residuals_from_fourth,
+    unseen,
+)
 from kinesphere.io.c3d.layout import Layout, first_frame_of, layout_of
 from kinesphere.io.c3d.parameters import Section
 from kinesphere.io.c3d.source import KEY, Source
@@ -43,10 +49,11 @@ def read_c3d(path: str | Path) -> Recording:
         layout = layout_of(content)
     except UnreadableFile as error:
         raise UnreadableFile(f"{path}: {error}") from None
-    return _recording(path, layout, frames_from_bytes(content, layout))
+    frames = frames_from_bytes(content, layout)
+    return _recording(path, layout, frames, is_padded=len(content) > layout.end)
 
 
-def _recording(path: Path, layout: Layout, frames: Frames) -> Recording:
+def _recording(path: Path, layout: Layout, frames: Frames, is_padded: bool) -> Recording:
     warnings = list(layout.warnings)
     points = _points(layout, frames, warnings)
     labels = _labels(layout, warnings)
@@ -66,7 +73,15 @@ def _recording(path: Path, layout: Layout, frames: Frames) -> Recording:
         if kind is not None
     )
     source = Source(
-        layout, frames, labels, tuple(marker.tolist()), first_frame, metres, events, analog
+        layout,
+        frames,
+        labels,
+        tuple(marker.tolist()),
+        first_frame,
+        metres,
+        events,
+        analog,
+        is_padded,
     )
     findings: dict[str, Json] = {
         "format": "C3D",
@@ -98,7 +113,7 @@ def _recording(path: Path, layout: Layout, frames: Frames) -> Recording:
 
 
 def _points(layout: Layout, frames: Frames, warnings: list[str]) -> Array:
-    points = frames.points.astype(np.float64)
+    points = as_doubles(frames.points)
     if not layout.is_float:
         points *= layout.scale
     hidden = unseen(frames.fourth)

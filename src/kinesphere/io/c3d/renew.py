@@ -10,7 +10,15 @@ from kinesphere import __version__
 from kinesphere.data import Analog, Array, Output, Recording
 from kinesphere.io.c3d.events import start_time, with_events
 from kinesphere.io.c3d.header import LARGEST_WORD
-from kinesphere.io.c3d.parameters import Section, float_list, floats, text, text_pairs, words
+from kinesphere.io.c3d.parameters import (
+    Section,
+    float_list,
+    floats,
+    text,
+    text_pairs,
+    word_list,
+    words,
+)
 from kinesphere.io.c3d.points import Point
 from kinesphere.io.c3d.source import Source
 
@@ -80,7 +88,7 @@ def _with_points(
     n_points = len(points)
     if source is None or n_points != source.layout.n_points:
         section = section.with_parameters("POINT", words("USED", n_points))
-    if source is None or recording.rate != source.layout.rate:
+    if section.number("POINT", "RATE") != np.float32(recording.rate):
         section = section.with_parameters("POINT", floats("RATE", recording.rate))
     unchanged = source is not None and source.labels == tuple(point.label for point in points)
     if not unchanged:
@@ -173,7 +181,7 @@ def _with_analog(section: Section, analog: Analog | None, was: Analog | None) ->
         section = (
             section.with_parameters("ANALOG", floats("GEN_SCALE", 1.0))
             .with_list("ANALOG", *float_list("SCALE", np.ones(n)))
-            .with_list("ANALOG", *float_list("OFFSET", np.zeros(n)))
+            .with_list("ANALOG", *word_list("OFFSET", np.zeros(n)))
         )
     return (
         section.with_texts("ANALOG", "LABELS", analog.labels)

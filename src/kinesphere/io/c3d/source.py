@@ -25,3 +25,6 @@ class Source:
     """How many metres the file's unit of length is."""
     events: tuple[Event, ...]
     analog: Analog | None
+    is_padded: bool
+    """Whether anything followed the last number: the c3d package takes what does for a frame of
+    files that count from 0."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array, Recording
+from kinesphere.data import Array, Mask, Recording
 from kinesphere.errors import BadRecording
 from kinesphere.io.atomic import replacing
 from kinesphere.io.c3d.analog import raw_samples, samples_from_analog
@@ -30,7 +30,6 @@ _SCALE = 0.1
 """mm, the step of the residuals in files of our own: 255 of them reach 25.5 mm."""
 _EXACT = 1e-3
 """Share of a step by which a number may miss a whole one and still be it: rounding leaves 1e-9."""
-_LARGEST_INTEGER = 32767
 
 
 def write_c3d(recording: Recording, path: str | Path) -> None:
@@ -62,11 +61,11 @@ def _bytes_from_recording(recording: Recording) -> bytes:
     points = points_of(recording, source)
     section = renewed(recording, points, source).with_unique_names()
     numbers = _numbers(recording, points, source, section)
-    blocks = len(bytes_from_section(section)) // BLOCK
-    data_block = 2 + blocks
-    section = section.with_parameters("POINT", words("DATA_START", data_block))
     if section.number("POINT", "SCALE") != np.float32(numbers.scale):
         section = section.with_parameters("POINT", floats("SCALE", numbers.scale))
+    section = section.with_parameters("POINT", words("DATA_START", 0))  # takes its room
+    data_block = 2 + len(bytes_from_section(section)) // BLOCK
+    section = section.with_parameters("POINT", words("DATA_START", data_block))
     header = Header(
         n_points=len(points),
         n_analog=numbers.frames.analog.size // recording.n_frames,
@@ -79,7 +78,7 @@ def _bytes_from_recording(recording: Recording) -> bytes:
         raw=_raw_header(recording, source),
     )
     data = bytes_from_frames(numbers.frames)
-    padding = bytes(-len(data) % BLOCK)
+    padding = bytes(-len(data) % BLOCK) if source is None or source.is_padded else b""
     return bytes_from_header(header) + bytes_from_section(section) + data + padding
 
 
@@ -99,7 +98,7 @@ def _numbers(
     metres = source.metres if source else _MILLIMETRE
     scale = source.layout.scale if source else _SCALE
     values = coordinates(recording, points, metres)
-    gone = np.isnan(values).any(axis=2)
+    gone: Mask = np.asarray(np.isnan(values).any(axis=2))
     fourth: NDArray[Any] = fourth_from_residuals(residuals(recording, points, metres), ~gone, scale)
     values = np.where(gone[..., None], 0.0, values)
     rows = source_rows(recording, source) if source else None
@@ -108,10 +107,14 @@ def _numbers(
     analog, per_frame = _analog(recording, source, section)
     if source is not None and not source.layout.is_float:
         steps = values / scale
-        if _whole(steps) and _whole(fourth) and _whole(analog, unsigned=True):
+        words = np.iinfo(np.int16).max
+        if _fits(steps, words) and _fits(fourth, words) and _fits(analog, LARGEST_WORD):
             frames = Frames(_integers(steps), _integers(fourth), _integers(analog))
             return _Numbers(frames, scale, per_frame)
-    frames = Frames(*(np.asarray(a, dtype=np.float32) for a in (values, fourth, analog)))
+    with np.errstate(over="ignore", invalid="ignore"):
+        frames = Frames(*(np.asarray(a, dtype=np.float32) for a in (values, fourth, analog)))
+    if not np.isfinite(frames.points[~gone]).all():
+        raise BadRecording(f"a coordinate is {np.abs(values[~gone]).max():g}, too large for C3D")
     return _Numbers(frames, -scale, per_frame)
 
 
@@ -119,9 +122,10 @@ def _analog(recording: Recording, source: Source | None, section: Section) -> tu
     """Return the samples to store, (n_samples, n_channels), and how many there are a frame."""
     analog, n_frames = recording.analog, recording.n_frames
     if source is not None and analog is source.analog and n_frames == source.layout.n_frames:
-        return raw_samples(source.layout, source.frames.analog), source.layout.samples_per_frame
+        samples = raw_samples(source.layout, source.frames.analog)
+        return samples, source.layout.header.samples_per_frame
     if analog is None:
-        return np.empty((0, 0)), 1
+        return np.empty((0, 0)), source.layout.header.samples_per_frame if source else 0
     per_frame = len(analog.values) // n_frames
     if per_frame * n_frames != len(analog.values) or per_frame == 0:
         raise BadRecording(
@@ -131,13 +135,13 @@ def _analog(recording: Recording, source: Source | None, section: Section) -> tu
     return samples_from_analog(analog, section), per_frame
 
 
-def _whole(values: NDArray[Any], unsigned: bool = False) -> bool:
-    largest = 2 * _LARGEST_INTEGER + 1 if unsigned else _LARGEST_INTEGER
+def _fits(values: NDArray[Any], largest: int) -> bool:
+    """Tell whether every number is whole, but for rounding, and has room in 16 bits."""
     nearest = np.round(values)
     return bool(
-        np.isfinite(values).all()
-        and (np.abs(values - nearest) <= _EXACT).all()
-        and (np.abs(nearest) <= largest).all()
+        (np.abs(values - nearest) <= _EXACT).all()  # not so where it is NaN
+        and (nearest >= np.iinfo(np.int16).min).all()
+        and (nearest <= largest).all()
     )
 
 
