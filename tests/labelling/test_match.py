@@ -57,11 +57,25 @@ def test_everything_before_the_last_colon_is_the_subject(rng):
     assert match_labels(file, CMU).labels == CMU.labels
 
 
+def test_a_subjects_own_name_may_hold_underscores(rng):
+    file = recording_of(rng, prefixed("Anna_B", CMU.labels, "_"))
+    assert find_subjects(file) == ("Anna_B",)
+    assert match_labels(file, CMU).labels == CMU.labels
+
+
 @pytest.mark.parametrize("label", ["L_IAS", "Knee_Marker1", "R_LTOE"])
 def test_an_underscore_alone_is_no_prefix(rng, label):
     file = recording_of(rng, (*CMU.labels, label))
     assert find_subjects(file) == ()
     assert label in match_labels(file, CMU).labels
+
+
+def test_an_underscore_ends_a_prefix_in_a_learnt_model_as_well(rng):
+    labels = tuple(f"site_{i}" for i in range(12))
+    model = TopologicalModel("mine", (Segment("limb_01", labels),), (), "limb_01")
+    matched = match_labels(recording_of(rng, prefixed("Anna", labels, "_")), model)
+    assert matched.labels == labels
+    assert findings(match_labels(recording_of(rng, labels), model))["subject"] == ""
 
 
 def test_no_prefix_no_subject(rng):

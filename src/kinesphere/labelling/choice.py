@@ -6,7 +6,7 @@ from typing import TypeAlias
 from kinesphere.data import Recording, TopologicalModel
 from kinesphere.errors import BadRecording
 from kinesphere.labelling.models import built_in_model, built_in_models
-from kinesphere.labelling.spelling import spelled, vocabulary
+from kinesphere.labelling.spelling import spelled
 from kinesphere.labelling.subjects import Name, parse_labels
 
 COVERED = 0.9
@@ -55,7 +55,7 @@ def names_by_subject(recording: Recording, model: TopologicalModel) -> Groups:
     cover more of the layout: then the prefix is a prop's.
     """
     groups: dict[str, list[Name]] = {}
-    for name in parse_labels(recording.labels, vocabulary(model)):
+    for name in parse_labels(recording.labels, model):
         groups.setdefault(name.subject, []).append(name)
     if len(groups) == 2 and "" in groups:
         (subject,) = (known for known in groups if known)

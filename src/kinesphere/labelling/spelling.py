@@ -17,11 +17,6 @@ class _Reading(NamedTuple):
     label: str
 
 
-def vocabulary(model: TopologicalModel) -> tuple[str, ...]:
-    """Return every spelling that a model knows."""
-    return (*model.labels, *model.aliases)
-
-
 def spelled(names: Iterable[Name], model: TopologicalModel) -> dict[str, tuple[Name, ...]]:
     """Return, for each label of the model, the names that spell it best; two names are a clash.
 
