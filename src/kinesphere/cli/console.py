@@ -85,7 +85,8 @@ def print_table(
     )
     for i, name in enumerate(header):
         justify: Any = "right" if right[i : i + 1] == "r" else "left"
-        table.add_column(Text(name), justify=justify, overflow="fold")
+        style = "bold" if i == 0 else ""
+        table.add_column(Text(name), justify=justify, overflow="fold", style=style)
     for row in rows:
         table.add_row(*(Text(plain(cell)) for cell in row))
     console.print(table)

@@ -14,7 +14,7 @@ from kinesphere.cli.console import (
 from kinesphere.cli.stages import stage_in_words
 from kinesphere.data import Solution, TopologicalModel
 from kinesphere.io.summary import summary_of
-from kinesphere.report import JointRow, condensed, joint_rows, rms, unique
+from kinesphere.report import JointRow, joint_rows, rms, unique
 
 
 def describe_solution(solution: Solution) -> dict[str, Any]:
@@ -70,7 +70,7 @@ def show_solution(summary: dict[str, Any], solution: Solution) -> None:
     )
     if summary["warnings"]:
         print_title(console, "Warnings")
-        print_warnings(console, condensed(summary["warnings"]))
+        print_warnings(console, summary["warnings"])
 
 
 def _joint_cells(row: JointRow) -> tuple[str, ...]:

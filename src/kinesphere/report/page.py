@@ -14,7 +14,7 @@ import kinesphere
 from kinesphere.data import Solution
 from kinesphere.report.scene import scene_from_solution
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
-from kinesphere.report.wording import condensed
+from kinesphere.report.wording import unique
 
 _SCRIPTS = ("unpack.js", "space.js", "player.js", "curves.js", "heat.js", "page.js")
 
@@ -41,7 +41,7 @@ def report_html(solution: Solution, title: str = "") -> str:
         title=title or "Solved motion",
         version=kinesphere.__version__,
         tiles=tiles(solution),
-        warnings=condensed(solution.warnings),
+        warnings=unique(solution.warnings),
         joints=joints,
         charts=chart_order(joints),
         limbs=limb_rows(solution),

@@ -1,7 +1,6 @@
 """Findings in words: no underscores, numbers with their unit and no digits that mean nothing."""
 
 import math
-import re
 from collections.abc import Sequence
 
 from kinesphere.data import Json
@@ -61,30 +60,6 @@ def number_in_words(value: float | None, unit: str = "", digits: int = 3) -> str
 def unique(sentences: Sequence[str]) -> list[str]:
     """Return sentences once each, in the order they came up."""
     return list(dict.fromkeys(sentences))
-
-
-def condensed(warnings: Sequence[str]) -> list[str]:
-    """Return warnings with those that say the same of several joints or limbs drawn together.
-
-    ``left_knee: REASON. CONSEQUENCE`` counts as saying CONSEQUENCE; a reason that only one of them
-    has is left to the step that gave it.
-    """
-    said: dict[str, list[tuple[str, str]]] = {}
-    for warning in unique(warnings):
-        named = re.fullmatch(r"(\w+): (?:.*\. )?(.+)", warning, flags=re.DOTALL)
-        subject, text = named.groups() if named else ("", warning)
-        said.setdefault(text if subject else warning, []).append((subject, warning))
-    lines: list[str] = []
-    for text, group in said.items():
-        if len(group) == 1:
-            lines.append(group[0][1])
-            continue
-        subjects = list(dict.fromkeys(subject.replace("_", " ") for subject, _ in group))
-        start = text[0].upper() + text[1:].rstrip(".")
-        plural = f"{len(subjects)} joints or limbs" if len(subjects) > 1 else subjects[0]
-        listed = f": {', '.join(subjects)}" if len(subjects) > 1 else ""
-        lines.append(f"{start} ({plural}{listed})")
-    return lines
 
 
 def _value(value: Json, unit: str, listed: int) -> str:
