@@ -171,7 +171,7 @@ def test_an_unseen_limb_keeps_its_last_known_turn(odd_motion, tmp_path):
     rotations, origins = odd_motion.rotations.copy(), odd_motion.origins.copy()
     flags = odd_motion.flags.copy()
     for limb, frames in (
-        (4, slice(20, 33)),
+        (5, slice(20, 33)),
         (2, slice(0, 9)),
         (6, slice(None)),
         (0, slice(70, 75)),
