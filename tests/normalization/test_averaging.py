@@ -1,0 +1,48 @@
+"""The mean of rotations that outliers do not move."""
+
+import numpy as np
+from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
+
+from kinesphere.geometry.rotations import rotation_angle
+from kinesphere.normalization.averaging import robust_mean_rotations
+
+EXACT = 1e-9
+
+
+def around(rng, centre, n, sigma):
+    return centre @ Rotation.from_rotvec(rng.normal(scale=sigma, size=(n, 3))).as_matrix()
+
+
+def test_outliers_hardly_move_it(rng):
+    centre = Rotation.random(rng=rng).as_matrix()
+    good = around(rng, centre, 80, 0.02)
+    bad = around(rng, Rotation.random(rng=rng).as_matrix(), 20, 0.02)
+    mean = robust_mean_rotations(np.concatenate([good, bad])[:, None])[0]
+    assert rotation_angle(centre.T @ mean) < 0.02
+    chordal = Rotation.from_matrix(np.concatenate([good, bad])).mean().as_matrix()
+    assert rotation_angle(centre.T @ chordal) > 0.1
+
+
+def test_it_turns_with_its_rotations_from_both_sides(rng):
+    rotations = around(rng, np.eye(3), 31, 0.4)[:, None]
+    left, right = Rotation.random(2, rng=rng).as_matrix()
+    mean = robust_mean_rotations(rotations)[0]
+    assert_allclose(
+        robust_mean_rotations(left @ rotations @ right)[0], left @ mean @ right, atol=EXACT
+    )
+
+
+def test_one_is_its_own_mean_and_gaps_are_left_out(rng):
+    rotations = Rotation.random(10, rng=rng).as_matrix().reshape(5, 2, 3, 3)
+    rotations[1:, 0] = np.nan
+    means = robust_mean_rotations(rotations)
+    assert_allclose(means[0], rotations[0, 0], atol=EXACT)
+    assert_allclose(means[1], robust_mean_rotations(rotations[:, 1:])[0], atol=EXACT)
+    assert np.isnan(robust_mean_rotations(rotations[1:])[0]).all()
+
+
+def test_many_are_nearer_to_the_truth_than_one(rng):
+    centre = Rotation.random(rng=rng).as_matrix()
+    rotations = around(rng, centre, 400, np.deg2rad(5))
+    assert rotation_angle(centre.T @ robust_mean_rotations(rotations[:, None])[0]) < np.deg2rad(1)
