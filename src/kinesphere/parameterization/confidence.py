@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.parameterization.axes.fit import Labels, phase_swing
+from kinesphere.parameterization.axes.fit import Labels, phase_swing, thinned
 from kinesphere.parameterization.samples import JointSamples, Phase
 from kinesphere.parameterization.settings import AxesSettings
 
@@ -147,7 +147,7 @@ def main_movements(samples: JointSamples, s: AxesSettings) -> tuple[Phase, ...]:
     for phase in samples.phases:
         w = phase_swing(samples, phase).vectors
         values, vectors = np.linalg.eigh(w.T @ w)
-        angles = w @ vectors[:, 2]
+        angles = w @ vectors[:, 2] / np.sqrt(thinned(phase).step)
         extent = float(np.diff(np.percentile(angles, PERCENTILES))[0])
         far_enough = extent >= np.deg2rad(s.smallest_range)
         if far_enough and values[2] >= s.purest * values.sum():

@@ -15,6 +15,7 @@ from kinesphere.parameterization.settings import AxesSettings
 Labels = NDArray[np.intp]
 
 SAME = np.cos(np.deg2rad(25.0))  # a phase within 25° of an axis moves about it
+MOST_FRAMES = 400  # of one phase; what they have in common shows in fewer
 MANY_PHASES = 40  # all pairs of the heaviest so many are tried as a start
 
 
@@ -41,10 +42,11 @@ class PhaseScatter:
 def phase_scatter(samples: JointSamples) -> PhaseScatter:
     """Return the scatter of ``log(Q Q̄ᵀ)`` of every phase, Q̄ its mean rotation."""
     scatter = np.zeros((len(samples.phases), 3, 3))
-    for i, (start, stop) in enumerate(samples.phases):
-        rotations = samples.rotations[start:stop]
+    for i, phase in enumerate(samples.phases):
+        frames = thinned(phase)
+        rotations = samples.rotations[frames]
         w = rotation_log(rotations @ mean_rotation(rotations).T)
-        scatter[i] = w.T @ w
+        scatter[i] = w.T @ w * frames.step
     values, vectors = np.linalg.eigh(scatter)
     return PhaseScatter(scatter, values[:, ::-1], vectors[:, :, 2])
 
@@ -130,7 +132,8 @@ class Swing:
     """Rotation of a limb about its mean in one phase, without what it turns about itself."""
 
     vectors: Array
-    """(n, 3) rad, rotation vectors, across the limb's mean direction."""
+    """(n, 3) rad, rotation vectors across the limb's mean direction, weighted so that their squares
+    add up to those of all frames."""
     direction: Array
     """(3,) mean direction of the limb."""
 
@@ -143,11 +146,18 @@ class Swing:
 
 def phase_swing(samples: JointSamples, phase: Phase) -> Swing:
     """Return the swing of one phase."""
-    rotations = samples.rotations[slice(*phase)]
+    frames = thinned(phase)
+    rotations = samples.rotations[frames]
     w = rotation_log(rotations @ mean_rotation(rotations).T)
-    p = samples.positions[slice(*phase)].mean(axis=0)
+    p = samples.positions[frames].mean(axis=0)
     p /= max(float(np.linalg.norm(p)), 1e-9)
-    return Swing(w - np.outer(w @ p, p), p)
+    return Swing(np.sqrt(frames.step) * (w - np.outer(w @ p, p)), p)
+
+
+def thinned(phase: Phase) -> slice:
+    """Return the frames of a phase, evenly thinned where there are very many."""
+    start, stop = phase
+    return slice(start, stop, max(1, (stop - start) // MOST_FRAMES))
 
 
 def phase_labels(samples: JointSamples, axes: Array) -> Labels:

@@ -24,8 +24,8 @@ def sara(samples: JointSamples, n_axes: int, settings: AxesSettings) -> Array:
         return np.empty((0, 3))
     parts = np.empty((len(samples.phases), 3, 3))
     for i, (start, stop) in enumerate(samples.phases):
-        b = samples.rotations[start:stop].sum(axis=0)
         n = stop - start
+        b = samples.rotations[start:stop].sum(axis=0)
         parts[i] = b @ b.T / n - n * np.eye(3)  # n (C − I)
     values, vectors = np.linalg.eigh(parts)
     # what the rotations spread across the axis, less what they spread about it
