@@ -84,20 +84,27 @@ def _size(row: TruthRow) -> float:
 def _centre_rows(
     performance: Performance, solution: Solution, same: Correspondence
 ) -> Iterator[TruthRow]:
-    """Of joints with one axis only the part across it: along it the motion tells nothing."""
+    """In every frame, and the constant part of it: what is wrong with the skeleton, not the poses.
+
+    Of joints with one axis only the part across it: along it a hinge tells nothing.
+    """
     estimated = same.into_truth(solution.motion.joint_centres())
     for pair in same.joints:
         offsets = estimated[:, pair.estimate_index] - performance.joint_centres[:, pair.truth_index]
-        if pair.truth.n_axes > 1:
-            yield _row("skeleton", "joint centre", pair.name, _lengths_mm(offsets), "mm")
-            continue
-        assert pair.truth.axes is not None
-        axis = pair.parent_world @ pair.truth.axes[0]
-        along = (offsets * axis).sum(axis=1, keepdims=True)
-        across = _lengths_mm(offsets - along * axis)
-        yield _row("skeleton", "joint centre across the axis", pair.name, across, "mm")
-        along_mm = np.abs(along[:, 0]) * 1e3
-        yield _row("skeleton", "joint centre along the axis", pair.name, along_mm, "mm")
+        offsets = (offsets[:, None] @ pair.parent_world)[:, 0]  # seen from the true parent
+        known = np.isfinite(offsets).all(axis=1)
+        constant = offsets[known].mean(axis=0) if known.any() else np.full(3, np.nan)
+        across, suffix = np.eye(3), ""
+        if pair.truth.n_axes == 1:
+            assert pair.truth.axes is not None
+            axis = pair.truth.axes[0]
+            across, suffix = across - np.outer(axis, axis), " across the axis"
+            slid = np.array([1e3 * abs(constant @ axis)])
+            yield _row("skeleton", "joint centre along the axis, constant", pair.name, slid, "mm")
+        off = _lengths_mm(offsets @ across)
+        yield _row("skeleton", f"joint centre{suffix}", pair.name, off, "mm")
+        off = _lengths_mm(constant[None] @ across)
+        yield _row("skeleton", f"joint centre{suffix}, constant", pair.name, off, "mm")
 
 
 def _length_rows(
@@ -132,6 +139,9 @@ def _axis_rows(pair: JointPair) -> Iterator[TruthRow]:
         sine = np.linalg.norm(np.cross(true, found))
         off = float(np.rad2deg(np.arctan2(sine, abs(true @ found))))
         yield TruthRow("axes", "axis", f"{pair.name} axis {k + 1}", off, off, "deg")
+    if pair.truth.n_axes > 1:
+        swapped = float(pair.order != tuple(range(pair.truth.n_axes)))
+        yield TruthRow("axes", "axes in the other order", pair.name, swapped, swapped, "")
 
 
 def _angle_rows(pair: JointPair) -> Iterator[TruthRow]:

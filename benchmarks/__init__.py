@@ -1,0 +1,1 @@
+"""How good and how fast the line is; results are written by these scripts, never by hand."""
