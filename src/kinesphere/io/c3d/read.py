@@ -22,6 +22,7 @@ from kinesphere.io.c3d.frames import (
 )
 from kinesphere.io.c3d.layout import Layout, first_frame_of, layout_of
 from kinesphere.io.c3d.parameters import Section
+from kinesphere.io.c3d.rotations import rotations_from_bytes
 from kinesphere.io.c3d.source import KEY, Source
 from kinesphere.io.registry import read_bytes
 from kinesphere.io.units import length_unit
@@ -49,11 +50,10 @@ def read_c3d(path: str | Path) -> Recording:
         layout = layout_of(content)
     except UnreadableFile as error:
         raise UnreadableFile(f"{path}: {error}") from None
-    frames = frames_from_bytes(content, layout)
-    return _recording(path, layout, frames, is_padded=len(content) > layout.end)
+    return _recording(path, content, layout, frames_from_bytes(content, layout))
 
 
-def _recording(path: Path, layout: Layout, frames: Frames, is_padded: bool) -> Recording:
+def _recording(path: Path, content: bytes, layout: Layout, frames: Frames) -> Recording:
     warnings = list(layout.warnings)
     points = _points(layout, frames, warnings)
     labels = _labels(layout, warnings)
@@ -81,7 +81,8 @@ def _recording(path: Path, layout: Layout, frames: Frames, is_padded: bool) -> R
         metres,
         events,
         analog,
-        is_padded,
+        is_padded=len(content) > layout.end,
+        rotations=rotations_from_bytes(content, layout, warnings),
     )
     findings: dict[str, Json] = {
         "format": "C3D",

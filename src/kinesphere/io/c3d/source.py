@@ -28,3 +28,5 @@ class Source:
     is_padded: bool
     """Whether anything followed the last number: the c3d package takes what does for a frame of
     files that count from 0."""
+    rotations: bytes
+    """What follows the points and samples in files with segment rotations."""

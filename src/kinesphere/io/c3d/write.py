@@ -22,6 +22,7 @@ from kinesphere.io.c3d.header import (
 from kinesphere.io.c3d.parameters import MOST, Section, floats, words
 from kinesphere.io.c3d.points import Point, coordinates, points_of, residuals, restore, source_rows
 from kinesphere.io.c3d.renew import renewed
+from kinesphere.io.c3d.rotations import with_rotations
 from kinesphere.io.c3d.section import bytes_from_section
 from kinesphere.io.c3d.source import KEY, Source
 
@@ -66,6 +67,13 @@ def _bytes_from_recording(recording: Recording) -> bytes:
     section = section.with_parameters("POINT", words("DATA_START", 0))  # takes its room
     data_block = 2 + len(bytes_from_section(section)) // BLOCK
     section = section.with_parameters("POINT", words("DATA_START", data_block))
+    data = bytes_from_frames(numbers.frames)
+    rotations = b""
+    if source is not None and recording.n_frames == source.layout.n_frames:
+        rotations = source.rotations
+    if source is None or source.is_padded:
+        data += bytes(-len(data) % BLOCK)
+    section = with_rotations(section, rotations, data_block + len(data) // BLOCK)
     header = Header(
         n_points=len(points),
         n_analog=numbers.frames.analog.size // recording.n_frames,
@@ -77,9 +85,7 @@ def _bytes_from_recording(recording: Recording) -> bytes:
         rate=recording.rate,
         raw=_raw_header(recording, source),
     )
-    data = bytes_from_frames(numbers.frames)
-    padding = bytes(-len(data) % BLOCK) if source is None or source.is_padded else b""
-    return bytes_from_header(header) + bytes_from_section(section) + data + padding
+    return bytes_from_header(header) + bytes_from_section(section) + data + rotations
 
 
 @dataclass(frozen=True, eq=False)
