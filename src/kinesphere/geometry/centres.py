@@ -14,6 +14,8 @@ NOISE_FLOOR = 1e-6
 """Least scale of the residuals relative to the noise they are expected to have."""
 CELL = np.deg2rad(10.0)
 """rad, poses nearer to each other than this count as one: soft tissue errs alike in both."""
+ALIGNED = 0.8
+"""Least cosine between the axis of a hinge and the direction its motion knows least."""
 _DIFFERENCE = 1e-6  # m, step of the variance's derivative, which is a quadratic: nearly exact
 
 
@@ -39,6 +41,8 @@ class CentreFit:
     """m, robust standard deviation of the distances that should stay the same."""
     data_covariance: Array
     """(3, 3) m² of the centre as far as the motion knows it; a thousand spreads where it does not."""
+    prior: Array
+    """(3, 3) 1/m², how firmly the centre was expected where it was."""
     covariance: Array
     """(3, 3) m² with the expectation taken in."""
     n_poses: int
@@ -114,7 +118,16 @@ def sphere_centre(points: Array, expected: Array, ridge: float = 1e-4) -> Array:
     return centre
 
 
-def fit_centre(view: View, expected: Array, spread: float, *, rounds: int = 50) -> CentreFit:
+def fit_centre(
+    view: View,
+    expected: Array,
+    spread: float,
+    *,
+    hidden: float = 1.0,
+    hinge: Array | None = None,
+    tighter: float = 10.0,
+    rounds: int = 50,
+) -> CentreFit:
     """Fit the point that markers turn about, by maximum a posteriori.
 
     The data: every marker keeps its distance to the centre. Residuals have a soft-L1 loss, and each
@@ -134,25 +147,37 @@ def fit_centre(view: View, expected: Array, spread: float, *, rounds: int = 50) 
         Expected centre in the frame of the seeing limb.
     spread
         m, its standard deviation.
+    hidden
+        How many times larger errors are that the fit absorbs (skin that moves with the pose) than
+        those it leaves as residuals.
+    hinge : (3,), optional
+        Direction of the axis of a joint known to have only one. Where the motion knows the centre
+        least along it, too, the expectation holds ``tighter`` times tighter there: what residuals
+        tell about that direction is how they were spoilt.
+    tighter
     rounds
         Most steps of the descent.
     """
     n_poses = count_poses(view, expected)
+    looks = n_poses / hidden**2
     starts = (expected, sphere_centre(view.points, expected))
     x = min(starts, key=lambda start: _cost(view, start, expected, spread))
-    prior = 1 / spread**2
-    for weight in (0.01 * prior, prior):
-        x = _descend(view, x, expected, weight, n_poses, rounds)
-    scales = [_scale(term.residual)[0] for term in _distances(view, x)]
-    scale = float(np.median(scales)) if scales else 1.0
-    information = _information(view, x, n_poses, scale)
+    prior = np.eye(3) / spread**2
+    x = _descend(view, x, expected, 0.01 * prior, looks, rounds)
+    if hinge is not None:
+        weakest = np.linalg.eigh(_information(view, x, looks))[1][:, 0]
+        if abs(weakest @ hinge) > ALIGNED:
+            prior = prior + (tighter**2 - 1) / spread**2 * np.outer(weakest, weakest)
+    x = _descend(view, x, expected, prior, looks, rounds)
+    information = _information(view, x, looks)
     distances = np.linalg.norm(view.points - x, axis=2)
-    off = np.abs(distances - np.nanmedian(distances, axis=0))
+    off = np.abs(distances - _median(distances))
     return CentreFit(
         centre=x,
-        noise=1.4826 * float(np.nanmedian(off)),
-        data_covariance=np.linalg.inv(information + 1e-6 * prior * np.eye(3)),
-        covariance=np.linalg.inv(information + prior * np.eye(3)),
+        noise=1.4826 * float(_median(off.reshape(-1, 1))[0]),
+        data_covariance=np.linalg.inv(information + 1e-6 * prior),
+        prior=prior,
+        covariance=np.linalg.inv(information + prior),
         n_poses=n_poses,
     )
 
@@ -188,14 +213,14 @@ def _cost(view: View, x: Array, expected: Array, spread: float) -> float:
 
 
 def _descend(
-    view: View, x: Array, expected: Array, prior: float, n_poses: int, rounds: int
+    view: View, x: Array, expected: Array, prior: Array, looks: float, rounds: int
 ) -> Array:
     """Iterate Gauss-Newton; weights and scale of the residuals follow the current point."""
     for _ in range(rounds):
-        hessian, gradient = prior * np.eye(3), prior * (x - expected)
+        hessian, gradient = prior, prior @ (x - expected)
         for residual, jacobian in _distances(view, x):
             scale, w = _scale(residual)
-            share = n_poses / len(residual) / scale**2
+            share = looks / len(residual) / scale**2
             hessian = hessian + share * (jacobian * w[:, None]).T @ jacobian
             gradient = gradient + share * jacobian.T @ (w * residual)
         step = -np.linalg.solve(hessian, gradient)
@@ -236,12 +261,14 @@ def _scale(residual: Array) -> tuple[float, Array]:
     return scale, 1 / np.sqrt(1 + (residual / (2 * scale)) ** 2)
 
 
-def _information(view: View, centre: Array, n_poses: int, scale: float) -> Array:
+def _information(view: View, centre: Array, looks: float) -> Array:
     """Return what distances tell about the centre, (3, 3) 1/m².
 
     The directions to the markers are noisy themselves, which looks like motion; that share is
     taken off again.
     """
+    scales = [_scale(term.residual)[0] for term in _distances(view, centre)]
+    scale = float(np.median(scales)) if scales else 1.0
     own = point_covariance(view.pose, centre)
     total = np.zeros((3, 3))
     for seen, noise in zip(np.moveaxis(view.points, 1, 0), view.noise, strict=True):
@@ -256,6 +283,11 @@ def _information(view: View, centre: Array, n_poses: int, scale: float) -> Array
         shaky = across @ (noise**2 * np.eye(3) + point_covariance(view.pose, y)) @ across * scale**2
         told = np.einsum("ni,n,nj->ij", spread, w, spread) - np.einsum("n,nij->ij", w, shaky)
         values, vectors = np.linalg.eigh(told)
-        total += (vectors * np.maximum(values, 0.0)) @ vectors.T * n_poses / len(y)
+        total += (vectors * np.maximum(values, 0.0)) @ vectors.T * looks / len(y)
     return total
 
+
+def _median(values: Array) -> Array:
+    """Return the median of each column, NaN left out; 0 for a column of nothing else."""
+    columns = [column[np.isfinite(column)] for column in values.T]
+    return np.array([np.median(column) if len(column) else 0.0 for column in columns])

@@ -54,7 +54,6 @@ class Body:
         weights: Array = 1 / (noise**2 + NOISE**2)
         return weights
 
-
     @property
     def pose_covariance(self) -> Array:
         """(6, 6) uncertainty of the limb's pose, rad and m, from the noise of its points."""

@@ -2,9 +2,11 @@
 
 from dataclasses import dataclass
 
+import warnings
+
 import numpy as np
 
-from kinesphere.data import Array, JointModel, TopologicalModel
+from kinesphere.data import Array, JointModel, PoseFlag, TopologicalModel
 from kinesphere.errors import DegenerateMotion
 from kinesphere.geometry.centres import CentreFit, View, fit_centre
 from kinesphere.geometry.rigid import into_frame, out_of_frame
@@ -104,12 +106,17 @@ def _measure_limb(
     usual = float(np.sqrt(np.mean(parent.noise**2)) if solid is None else 0.0)
     noise = np.full(len(labels), usual) if solid is None else solid[1]
     view = View(seen_by_parent, np.hypot(noise, NOISE), parent.pose_covariance)
-    fit = fit_centre(view, expected, spread)
+    fit = fit_centre(
+        view,
+        expected,
+        spread,
+        hidden=settings.soft_tissue,
+        hinge=parent.right if joint.n_axes == 1 else None,
+        tighter=settings.hinge,
+    )
     measured = MeasuredJoint(joint, fit, expected, source)
     centre = out_of_frame(parent.rotations, parent.shifts, fit.centre[None])[:, 0]
-    with_joint = measure_shape(
-        np.concatenate([own, centre[:, None]], axis=1), outlier, min_spread
-    )
+    with_joint = measure_shape(np.concatenate([own, centre[:, None]], axis=1), outlier, min_spread)
     if with_joint is None:
         return _measure_line(joint, parent, tree, sample, centre, own, settings), measured
     shape, noise, _ = with_joint
@@ -165,6 +172,14 @@ def _measure_line(
         poses,
     )
     body.rotations, body.shifts = poses.rotations, poses.shifts
+    if body.borrow is not None:
+        # off the line after all, if only by a little: seen where the twist is known
+        lent = poses.flags == PoseFlag.TWIST_BORROWED
+        local = into_frame(poses.rotations[lent], poses.shifts[lent], own[lent])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # a marker never seen with the twist
+            mean = np.nanmean(local, axis=0)
+        body.shape = np.where(np.isfinite(mean), mean, shape)
     return body
 
 

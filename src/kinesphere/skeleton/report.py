@@ -70,7 +70,9 @@ def _verdict(
     fit = measured.fit
     inflate = max(1.0, (VERDICT_NOISE / max(fit.noise, 1e-9)) ** 2)
     deviations = np.sqrt(np.linalg.eigvalsh(fit.data_covariance * inflate))
-    weak = int((deviations > settings.undetermined_mm * 1e-3).sum())
+    # open: worse known than is useful, or known better from the expectation than from the motion
+    told = np.linalg.eigvals(fit.data_covariance @ fit.prior).real
+    weak = max(int((deviations > settings.undetermined_mm * 1e-3).sum()), int((told > 1).sum()))
     degrees = np.rad2deg(moved)
     placed = f"placed by expectation ({measured.source})"
     if moved < np.deg2rad(settings.min_range_deg) or weak > 1:

@@ -25,20 +25,35 @@ class SkeletonSettings:
         high=1000.0,
     )
     min_spread_mm: float = setting(
-        5.0,
+        8.0,
         "least extent of a limb's markers beside a line for them to give an orientation",
         unit="mm",
         low=0.01,
         high=1000.0,
     )
-    undetermined_mm: float = setting(
+    soft_tissue: float = setting(
+        3.0,
+        "how many times larger errors are that move with the pose, and that a joint centre's fit "
+        "absorbs, than those it leaves as residuals",
+        low=1.0,
+        high=100.0,
+        source="centres of one person from nine functional trials differ by about four times what "
+        "their residuals predict",
+    )
+    hinge: float = setting(
         10.0,
-        "a joint centre that motion alone knows worse than this in a direction counts as open there",
+        "how many times tighter a landmark holds the centre of a joint with one axis along that axis",
+        low=1.0,
+        high=1000.0,
+        source="on 41-marker recordings elbows and knees end up at the lateral marker without it",
+    )
+    undetermined_mm: float = setting(
+        20.0,
+        "a joint centre that motion alone knows worse than this in a direction is open there",
         unit="mm",
         low=0.1,
         high=1000.0,
-        source="half the spread of regression estimates of the hip, Harrington et al. 2007, "
-        "doi:10.1016/j.jbiomech.2006.02.003",
+        source="regression estimates of the hip have spreads of 15 to 25 mm",
     )
     min_range_deg: float = setting(
         15.0,
@@ -51,7 +66,7 @@ class SkeletonSettings:
     )
     flexed_deg: float = setting(
         20.0,
-        "flexion above which a hinge tells the direction of its axis and a limb may borrow its twist",
+        "flexion above which a hinge tells its axis and a limb may borrow its twist",
         unit="deg",
         low=5.0,
         high=90.0,
