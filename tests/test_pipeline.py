@@ -34,7 +34,7 @@ EVERY = [
 
 
 def small(seed=1, **more):
-    """An actor that calibrates in half a minute, at a rate that keeps tests quick."""
+    """Return an actor that calibrates in half a minute, at a rate that keeps tests quick."""
     return make_performance(
         np.random.default_rng(seed), rate=10.0, calibration_s=20.0, free_s=2.0, **more
     )
@@ -42,7 +42,7 @@ def small(seed=1, **more):
 
 @pytest.fixture(scope="module")
 def solved():
-    """A performance, its solution, and the stages that were told of."""
+    """Return a performance, its solution, and the stages that were told of."""
     performance, told = small(), []
     solution = solve(
         performance.recording,

@@ -5,6 +5,7 @@ what moves smoothly has small differences, and those deflate to a fraction.
 """
 
 import base64
+import math
 import zlib
 from typing import TypedDict
 
@@ -43,7 +44,7 @@ def pack(values: Array, step: float) -> Packed:
     Packed
         Values come back within half of its ``step``.
     """
-    series = values.reshape(len(values), -1).T
+    series = values.reshape(len(values), math.prod(values.shape[1:])).T
     known = np.isfinite(series)
     low, high = (series[known].min(), series[known].max()) if known.any() else (0.0, 0.0)
     offset = float(low + high) / 2
@@ -67,7 +68,8 @@ def unpack(packed: Packed) -> Array:
     """Return what the page sees of a packed array: the twin of ``assets/unpack.js``."""
     n_frames, *rest = packed["shape"]
     split = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), dtype=np.uint8)
-    steps = np.ascontiguousarray(split.reshape(2, -1).T).view("<u2").reshape(-1, n_frames)
+    steps = np.ascontiguousarray(split.reshape(2, -1).T).view("<u2")
+    steps = steps.reshape(math.prod(rest), n_frames)
     codes = np.cumsum(steps, axis=1, dtype=np.uint16).view(np.int16)
     values = np.where(codes == UNSEEN, np.nan, packed["offset"] + packed["step"] * codes)
     return np.asarray(values.T.reshape(n_frames, *rest), dtype=np.float64)
