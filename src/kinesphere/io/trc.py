@@ -70,7 +70,7 @@ def read_trc(path: str | Path) -> Recording:
     if not len(table.values):
         raise UnreadableFile(f"{path}: no frames after the header")
     n_told = header.fields.get("NumFrames", "")
-    if n_told != str(len(table.values)):
+    if _count(n_told) != len(table.values):
         warnings.append(f"the header says {n_told or 'no'} frames, there are {len(table.values)}")
 
     rows, first_frame = _placed(table, path, warnings)
@@ -172,12 +172,11 @@ def _read_header(lines: list[str], path: Path) -> _Header:
             f"{path}: line 4 starts with {lines[3][:20]!r}; Frame#, Time and labels were expected"
         )
     labels = [cell for cell in rest[1:] if cell]
-    try:
-        n_told = int(float(fields["NumMarkers"]))
-    except (ValueError, OverflowError):
+    n_told = _count(fields["NumMarkers"])
+    if n_told is None:
         raise UnreadableFile(
             f"{path}: line 3 gives {fields['NumMarkers']!r} for NumMarkers; a count was expected"
-        ) from None
+        )
     if n_told != len(labels) and "\t" not in lines[3]:
         labels = lines[3].split()[2:]  # labels a single blank apart
     if n_told != len(labels):
@@ -199,6 +198,14 @@ def _cells(line: str) -> list[str]:
     return [cell.strip() for cell in cells]
 
 
+def _count(told: str) -> int | None:
+    """Return the whole number that ``told`` is, even if it is written as 41.00."""
+    try:
+        return int(float(told))
+    except (ValueError, OverflowError):
+        return None
+
+
 def _placed(table: Table, path: Path, warnings: list[str]) -> tuple[NDArray[np.intp], int]:
     """Return which stored frame each row is, and the number of the first."""
     frames = table.values[:, 0]
@@ -217,8 +224,8 @@ def _placed(table: Table, path: Path, warnings: list[str]) -> tuple[NDArray[np.i
     rows = (frames - frames[0]) / step
     if (rows != np.round(rows)).any() or rows[-1] > MOST_MISSING * len(rows):
         raise UnreadableFile(
-            f"{path}: {len(rows)} frame numbers jump unevenly between {frames[0]:g} and "
-            f"{frames[-1]:g}"
+            f"{path}: {len(rows)} frame numbers jump unevenly between {frames[0]:.0f} and "
+            f"{frames[-1]:.0f}"
         )
     if missing := int(rows[-1]) + 1 - len(rows):
         warnings.append(f"{missing} frames are missing from the file; they count as not seen")
