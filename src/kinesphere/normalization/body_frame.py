@@ -35,7 +35,7 @@ def lateral_frames(to_right: Array, upward: Array) -> Array:
     """
     z = _unit(to_right)
     y = _unit(upward - (upward * z).sum(axis=-1, keepdims=True) * z)
-    return np.stack([np.cross(y, z), y, z], axis=-1)
+    return np.stack([np.cross(y, z), y, z + 0.0 * y], axis=-1)  # NaN in one is NaN in all
 
 
 def plane_frames(joints: Array, vertical: Array, trunk: Array) -> Array:

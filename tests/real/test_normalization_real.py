@@ -1,0 +1,119 @@
+"""Normalized frames on real recordings: against the vendor's thorax, feet ahead, standing found."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from kinesphere.io import read
+from kinesphere.labelling import choose_model, match_labels
+from kinesphere.normalization import NormalizationSettings, normalize
+from kinesphere.quality import orient
+from kinesphere.skeleton import fit_skeleton
+
+pytestmark = [pytest.mark.real, pytest.mark.slow]
+
+LATERAL, LONG = 8.0, 12.0  # deg; two definitions of one thorax, plus an error of its joints
+SPREAD = 4.0  # deg rms between body frames of the default position: breathing, sway, noise
+
+PLUGIN_GAIT = (
+    "plugin-gait/PiG_Calibration-FlatFoot-Full.c3d",
+    "plugin-gait/PiG_Motion-FlatFoot-Full.c3d",
+    "plugin-gait/pycgm_movement.c3d",
+    "plugin-gait/pycgm_static.c3d",
+)
+CMU = tuple(f"cmu41/{name}.c3d" for name in ("02_05", "06_01", "85_02", "135_02"))
+FUNCTIONAL = tuple(
+    f"functional/{name}.c3d"
+    for name in (
+        "Test_func_anat", "Test_func_lankle", "Test_func_lhip", "Test_func_lknee",
+        "Test_func_rankle", "Test_func_rhip", "Test_func_rknee", "Test_func_trunk",
+        "anatomical_posture",
+    )
+)  # fmt: skip
+STANDING = ("plugin-gait/PiG_Calibration-FlatFoot-Full.c3d", *CMU[:1], *CMU[2:], *FUNCTIONAL[1:])
+"""Recordings in which somebody stands, as seen by eye."""
+
+
+@cache
+def provisional(path):
+    recording = read(path)
+    model = choose_model(recording)
+    recording = orient(match_labels(recording, model), model)
+    return recording, fit_skeleton(recording, model)
+
+
+def vendor_thorax(recording):
+    """Return the vendor's thorax in our axes and world, (n_frames, 3, 3).
+
+    Four points: origin, and one each along anterior, lateral and a third axis that points down;
+    the lateral one then lies to the right.
+    """
+    points = {
+        output.label: output.values @ recording.world_from_file.T for output in recording.outputs
+    }
+    x, z, down = (points[f"TRX{end}"] - points["TRXO"] for end in "ALP")
+    axes = np.stack([x, -down, z], axis=-1)
+    return axes / np.linalg.norm(axes, axis=1, keepdims=True)
+
+
+def between(a, b):
+    return np.rad2deg(np.arccos(np.clip((a * b).sum(axis=-1), -1, 1)))
+
+
+@pytest.mark.parametrize("name", PLUGIN_GAIT)
+def test_the_trunk_agrees_with_the_vendors_thorax(name, recordings):
+    recording, motion = provisional(recordings / name)
+    result = normalize(motion)
+    ours = result.rotations[:, result.skeleton.limb_names.index("trunk")]
+    theirs = vendor_thorax(recording)
+    assert np.nanmedian(np.linalg.det(theirs)) == pytest.approx(1.0, abs=1e-3)
+    assert np.nanmedian(between(ours[:, :, 2], theirs[:, :, 2])) < LATERAL
+    assert np.nanmedian(between(ours[:, :, 1], theirs[:, :, 1])) < LONG
+
+
+@pytest.mark.parametrize("name", CMU + PLUGIN_GAIT + FUNCTIONAL)
+def test_everybody_faces_forward(name, recordings):
+    _, motion = provisional(recordings / name)
+    result = normalize(motion)
+    found = result.history[-1].findings
+    assert found["facing"]["scores"]["feet"] > 0.8
+    assert found["facing"]["scores"].get("knees", 1.0) > 0.5
+    assert found["spread_rms_deg"] < SPREAD
+    assert not any("backwards" in warning for warning in result.history[-1].warnings)
+
+
+@pytest.mark.parametrize("name", CMU + PLUGIN_GAIT + FUNCTIONAL)
+def test_only_somebody_who_stands_counts_as_standing(name, recordings):
+    found = normalize(provisional(recordings / name)[1]).history[-1].findings
+    assert found["good_default_position"] is (name in STANDING)
+
+
+@pytest.mark.parametrize("name", CMU + PLUGIN_GAIT + FUNCTIONAL)
+def test_limbs_hang_and_feet_point_ahead(name, recordings):
+    """In the normalized default position, legs lie within a stride of their ideal directions."""
+    found = normalize(provisional(recordings / name)[1]).history[-1].findings
+    off = found["limbs_off_ideal_deg"]
+    assert max(angle for limb, angle in off.items() if "thigh" in limb or "shank" in limb) < 45
+    assert max(angle for limb, angle in off.items() if "foot" in limb) < 60
+
+
+@pytest.mark.parametrize("name", CMU[:1] + PLUGIN_GAIT[:1] + FUNCTIONAL[2:3])
+def test_twice_is_once(name, recordings):
+    once = normalize(provisional(recordings / name)[1])
+    twice = normalize(once)
+    np.testing.assert_allclose(twice.rotations, once.rotations, atol=1e-9)
+    np.testing.assert_allclose(twice.origins, once.origins, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", PLUGIN_GAIT)
+def test_pairs_place_the_trunk_no_worse_than_the_papers_plane(name, recordings):
+    """What made the pairs of shoulders and hips the default."""
+    recording, motion = provisional(recordings / name)
+    theirs = vendor_thorax(recording)
+    worst = {}
+    for body in ("lateral", "plane"):
+        result = normalize(motion, NormalizationSettings(body=body))
+        ours = result.rotations[:, result.skeleton.limb_names.index("trunk")]
+        worst[body] = max(np.nanmedian(between(ours[:, :, k], theirs[:, :, k])) for k in range(3))
+    assert worst["lateral"] < worst["plane"] + 1.0
