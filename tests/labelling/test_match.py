@@ -78,6 +78,13 @@ def test_an_underscore_ends_a_prefix_in_a_learnt_model_as_well(rng):
     assert findings(match_labels(recording_of(rng, labels), model))["subject"] == ""
 
 
+def test_a_known_word_is_never_split(rng):
+    """A model learnt from labels that were never stripped."""
+    labels = prefixed("Rig", CMU.labels, "_")
+    model = TopologicalModel("mine", (Segment("limb_01", labels),), (), "limb_01")
+    assert match_labels(recording_of(rng, labels), model).labels == labels
+
+
 def test_no_prefix_no_subject(rng):
     file = recording_of(rng, GAIT.required)
     assert find_subjects(file) == ()
@@ -85,7 +92,7 @@ def test_no_prefix_no_subject(rng):
 
 
 def test_case_and_aliases_are_brought_to_the_model(rng):
-    spelled = {"LFHD": "lfhd", "RBAC": "RBAK", "LHEE": "Lheel"}
+    spelled = {"LFHD": "LfHd", "RBAC": "RBAK", "LHEE": "Lheel"}
     file = recording_of(rng, [spelled.get(label, label) for label in CMU.labels])
     matched = match_labels(file, CMU)
     assert matched.labels == CMU.labels
@@ -118,6 +125,22 @@ def test_a_bare_twin_of_a_prefixed_marker_is_a_clash(rng):
     file = recording_of(rng, (*prefixed("A", CMU.labels), "LFWT"))
     with pytest.raises(BadRecording, match="A:LFWT and LFWT both stand for LFWT"):
         match_labels(file, CMU)
+
+
+def test_a_bare_twin_beside_two_people_is_a_clash(rng):
+    both = (*prefixed("A", CMU.labels), *prefixed("B", CMU.labels))
+    with pytest.raises(BadRecording, match="A:LFWT and LFWT would both be called LFWT"):
+        match_labels(recording_of(rng, (*both, "LFWT")), CMU, "A")
+
+
+@pytest.mark.parametrize("n", [30, 41])
+def test_a_body_without_prefix_beside_one_with_is_another_person(rng, n):
+    file = recording_of(rng, (*prefixed("A", CMU.labels), *CMU.labels[:n]))
+    matched = match_labels(file, CMU, "A")
+    assert matched.labels == CMU.labels
+    assert_array_equal(matched.markers, file.markers[:, :41])
+    assert findings(matched)["other_people"] == [""]
+    assert_array_equal(match_labels(file, CMU, "").markers, file.markers[:, 41:])
 
 
 def test_missing_and_extra_markers_are_told_and_tolerated(rng):

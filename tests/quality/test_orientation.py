@@ -129,6 +129,10 @@ class TestAgainstTheFile:
         )
         assert_array_equal(world.markers, statue.markers)
 
+    def test_it_does_so_above_any_floor(self, statue):
+        file = replace(statue, markers=statue.markers + UP, up="-y")
+        assert step(orient(file)).findings["up"] == "+y"
+
     @pytest.mark.parametrize("field", ["+x", "-x", "+z", "-z"])
     def test_a_walker_overrules_a_field_across(self, walker, field):
         world = orient(replace(walker, up=field))
@@ -146,6 +150,15 @@ class TestAgainstTheFile:
         (warning,) = step(world).warnings
         assert "up is +y as the file says, although in 100% of the frames" in warning
         assert "+x" in warning
+
+    def test_nor_does_someone_lying_who_breathes(self, statue):
+        """Across the body, ends sway by millimetres; along it they stay: that is no floor."""
+        file = lying(statue)
+        breath = 0.005 * np.sin(np.linspace(0, 6, file.n_frames))[:, None, None] * UP
+        assert (
+            step(orient(replace(file, markers=file.markers + breath, up="+y"))).findings["up"]
+            == "+y"
+        )
 
     def test_an_acrobat_does_not(self, walker):
         markers = walker.markers.copy()
@@ -216,11 +229,13 @@ class TestWhoShowsIt:
         assert (found["up"], found["up_from"]) == (up_in(EXPORTS[9]), "body")
         assert found["right_handed_share"] is None
 
-    def test_subjects_are_looked_at_one_by_one(self, walker):
+    @pytest.mark.parametrize("unseen", [False, True])
+    def test_subjects_are_looked_at_one_by_one(self, walker, unseen):
         """Each person is seen in half of the frames only: a mean over both would have no body."""
         n = walker.n_frames // 2
         first, second = walker.markers.copy(), walker.markers.copy()
         first[n:], second[:n] = np.nan, np.nan
+        first[:] = np.nan if unseen else first
         labels = [f"{name}:{label}" for name in "AB" for label in walker.labels]
         both = Recording(np.concatenate([first, second], axis=1), tuple(labels), walker.rate)
         world = orient(exported(both, EXPORTS[33]))

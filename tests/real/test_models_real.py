@@ -147,6 +147,16 @@ def test_kneeling_and_prone_is_judged_by_the_floor(read):
     assert found["floor_sway"]["+z"] < 0.5 * found["floor_sway"]["+x"]
 
 
+def test_lying_prone_does_not_overrule_the_file_but_kneeling_upright_does(read):
+    whole = read("plates/KneeltoProne01.c3d")
+    prone = replace(whole, markers=whole.markers[1100:], residuals=None, up="+z")
+    assert step(orient(prone)).findings["up"] == "+z"
+    assert "a person who lies" in step(orient(prone)).warnings[0]
+    kneeling = replace(whole, markers=whole.markers[:500], residuals=None, up="+y")
+    assert step(orient(kneeling)).findings["up"] == "+z"
+    assert "the file says up is +y, but" in step(orient(kneeling)).warnings[0]
+
+
 EXPORTS = {
     "y-up": np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]]),
     "head-down": np.diag([1.0, -1, -1]),

@@ -11,6 +11,8 @@ from kinesphere.labelling.subjects import Name, parse_labels
 
 COVERED = 0.9
 """Share of a model's required labels from which on a recording counts as wearing that layout."""
+PERSON = 0.5
+"""Share from which on names count as a person's rather than a prop's: half a body is no wand."""
 
 Groups: TypeAlias = Mapping[str, Sequence[Name]]
 """Subject → the names that are theirs; the empty subject has those without a prefix."""
@@ -51,13 +53,13 @@ def choose_model(recording: Recording, subject: str | None = None) -> Topologica
 def names_by_subject(recording: Recording, model: TopologicalModel) -> Groups:
     """Group names by subject.
 
-    Where a single prefix is in the file, bare names are that subject's as well, unless they alone
-    cover more of the layout: then the prefix is a prop's.
+    Where a single prefix is in the file, bare names are that subject's as well, unless they are
+    another person's or it is a prop's: whoever covers half of the layout alone is a person.
     """
     groups: dict[str, list[Name]] = {}
     for name in parse_labels(recording.labels, model):
         groups.setdefault(name.subject, []).append(name)
-    if len(groups) == 2 and "" in groups:
+    if len(groups) == 2 and "" in groups and covered_share(groups[""], model) < PERSON:
         (subject,) = (known for known in groups if known)
         if covered_share(groups[subject], model) >= covered_share(groups[""], model):
             return {subject: [*groups[subject], *groups[""]]}

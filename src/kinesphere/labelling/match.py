@@ -10,6 +10,7 @@ from kinesphere.data import Json, Recording, Step, TopologicalModel
 from kinesphere.errors import BadRecording
 from kinesphere.labelling.choice import (
     COVERED,
+    PERSON,
     choose_subject,
     covered_share,
     names_by_subject,
@@ -17,10 +18,6 @@ from kinesphere.labelling.choice import (
 )
 from kinesphere.labelling.spelling import columns_by_label
 from kinesphere.labelling.subjects import Name
-
-PERSON = 0.5
-"""Share from which on a prefix counts as another person rather than a prop: half a body is no
-wand."""
 
 
 def match_labels(
@@ -54,7 +51,7 @@ def match_labels(
     others = {
         other: [name.column for name in theirs]
         for other, theirs in groups.items()
-        if other not in (chosen, "") and covered_share(theirs, model) >= PERSON
+        if other != chosen and covered_share(theirs, model) >= PERSON
     }
     dropped = {column for theirs in others.values() for column in theirs}
     kept = [column for column in range(recording.n_markers) if column not in dropped]
@@ -123,7 +120,9 @@ def _step(
             f"missing: {', '.join(map(str, missing))}"
         )
     if others:
-        warnings.append(f"markers of other people were dropped: {', '.join(others)}")
+        warnings.append(
+            f"markers of other people were dropped: {', '.join(o or '(no prefix)' for o in others)}"
+        )
     return Step(
         name="labelling",
         settings={"model": model.name, "subject": asked},

@@ -66,8 +66,8 @@ def check_constant(recording: Recording) -> Iterator[Finding]:
     high = np.where(seen[..., None], points, -np.inf).max(axis=0, initial=-np.inf)
     low = np.where(seen[..., None], points, np.inf).min(axis=0, initial=np.inf)
     still = enough & ((high - low) < STILL).all(axis=1)
-    if still.all() or not (enough & ~still).any():
-        return  # a statue, or nothing to compare with
+    if not (enough & ~still).any():
+        return  # a statue: nothing to compare with
     for i in np.flatnonzero(still):
         label = recording.labels[labelled[i]]
         if not (points[seen[:, i], i] == 0).all():
