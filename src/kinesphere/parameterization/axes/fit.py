@@ -114,10 +114,9 @@ def _best_start(directions: Array, weights: Array, n_axes: int) -> list[int]:
     return [int(heavy[k]) for k in best]
 
 
-def plane_normal(points: Array, weights: Array | None = None) -> Array:
+def plane_normal(points: Array) -> Array:
     """Return the normal of the plane through the origin that is closest to points, (n, 3)."""
-    w = np.ones(len(points)) if weights is None else weights
-    normal: Array = np.linalg.eigh((points * w[:, None]).T @ points)[1][:, 0]
+    normal: Array = np.linalg.eigh(points.T @ points)[1][:, 0]
     return normal
 
 
@@ -161,6 +160,14 @@ def thinned(phase: Phase) -> slice:
 
 
 def phase_labels(samples: JointSamples, axes: Array) -> Labels:
-    """Return which axis, (n_axes, 3), each phase moves about most, (n_phases,)."""
-    labels = [int(phase_swing(samples, phase).about(axes).argmax()) for phase in samples.phases]
-    return np.array(labels, dtype=np.intp)
+    """Return which axis, (n_axes, 3), each phase moves about most, (n_phases,).
+
+    −1 where less than half of its movement is about any.
+    """
+    labels = np.full(len(samples.phases), -1, dtype=np.intp)
+    for i, phase in enumerate(samples.phases):
+        swing = phase_swing(samples, phase)
+        about = swing.about(axes)
+        if about.max() >= 0.5 * (swing.vectors**2).sum():
+            labels[i] = int(about.argmax())
+    return labels

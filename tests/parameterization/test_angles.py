@@ -1,0 +1,162 @@
+"""Angles about one, two and three axes, and the branch they take."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
+
+from kinesphere.geometry.chain import joint_rotations
+from kinesphere.parameterization.angles import solve_angles
+from kinesphere.parameterization.settings import AngleSettings, TwistSettings
+
+EXACT = 1e-9  # rad; rounding leaves some 1e-12 away from singular poses
+
+
+def unit(rng):
+    v = rng.normal(size=3)
+    return v / np.linalg.norm(v)
+
+
+def draw_joint(rng, between, cone=90.0):
+    """Two axes ``between`` deg apart, a limb at ``cone`` deg to both, all in any frame."""
+    half = np.deg2rad(between) / 2
+    axes = np.array([[np.sin(half), np.cos(half), 0], [-np.sin(half), np.cos(half), 0]])
+    up = np.cos(np.deg2rad(cone)) / np.cos(half)
+    direction = np.array([0, up, np.sqrt(1 - up**2)])
+    long_axis = unit(rng)
+    turn = Rotation.random(rng=rng)
+    swing, _ = Rotation.align_vectors([direction], [turn.apply(long_axis)])
+    frame = Rotation.random(rng=rng)
+    return frame.apply(axes), (frame * swing * turn).as_matrix(), long_axis
+
+
+def solve(rotations, axes, rest, long_axis, branch="viterbi", known=None):
+    known = np.ones(len(rotations), dtype=bool) if known is None else known
+    return solve_angles(
+        rotations, axes, rest, long_axis, known, AngleSettings(branch=branch), TwistSettings()
+    )
+
+
+def smooth(rng, n, amplitudes):
+    """Angles that swing slowly, (n, len(amplitudes)) rad, each reaching its amplitude in deg."""
+    t = np.linspace(0, 1, n)[:, None]
+    waves = sum(
+        rng.normal(size=len(amplitudes))
+        * np.sin(2 * np.pi * f * t + rng.uniform(0, 6, len(amplitudes)))
+        for f in range(1, 6)
+    )
+    return np.deg2rad(amplitudes) * waves / np.abs(waves).max(axis=0)
+
+
+@pytest.mark.parametrize(("between", "cone"), [(70, 90), (90, 75), (110, 100), (45, 90)])
+def test_two_axes_return_what_was_put_in(rng, between, cone):
+    axes, rest, long_axis = draw_joint(rng, between, cone)
+    truth = smooth(rng, 120, [60, 80, 40])
+    rotations = joint_rotations(axes, rest, long_axis, truth[:, :2], truth[:, 2])
+    solved = solve(rotations, axes, rest, long_axis)
+    assert_allclose(solved.angles[:, :2], truth[:, :2], atol=EXACT)
+    assert np.isnan(solved.angles[:, 2]).all()
+    assert_allclose(solved.twists, truth[:, 2], atol=EXACT)
+    assert solved.excess.max() < EXACT
+
+
+def test_one_axis_returns_what_was_put_in(rng):
+    axes, rest, long_axis = draw_joint(rng, 90, 80)
+    truth = smooth(rng, 90, [150, 100])
+    rotations = joint_rotations(axes[:1], rest, long_axis, truth[:, :1], truth[:, 1])
+    solved = solve(rotations, axes[:1], rest, long_axis)
+    assert_allclose(solved.angles[:, 0], truth[:, 0], atol=EXACT)
+    assert np.isnan(solved.angles[:, 1:]).all()
+    assert_allclose(solved.twists, truth[:, 1], atol=EXACT)
+    assert solved.excess.max() < EXACT
+
+
+def test_one_axis_says_how_far_outside_its_cone_the_limb_is(rng):
+    axis, long_axis = np.eye(3)[2], np.eye(3)[0]
+    tilt = Rotation.from_rotvec([0, -np.deg2rad(13), 0])  # x towards z, out of the plane
+    rotations = (Rotation.from_rotvec([0, 0, 0.7]) * tilt).as_matrix()[None]
+    solved = solve(rotations, axis[None], np.eye(3), long_axis)
+    assert solved.angles[0, 0] == pytest.approx(0.7, abs=EXACT)
+    assert solved.excess[0] == pytest.approx(np.deg2rad(13), abs=EXACT)
+
+
+def test_three_axes_of_any_direction_leave_no_twist(rng):
+    axes, rest, long_axis = draw_joint(rng, 75, 85)
+    axes = np.stack([unit(rng), *axes])
+    truth = smooth(rng, 110, [50, 40, 60])
+    rotations = joint_rotations(axes, rest, long_axis, truth, np.zeros(110))
+    solved = solve(rotations, axes, rest, long_axis)
+    rebuilt = joint_rotations(axes, rest, long_axis, solved.angles, solved.twists)
+    assert_allclose(solved.twists, 0, atol=0)
+    reached = solved.excess < EXACT
+    assert reached.mean() > 0.9
+    assert_allclose(rebuilt[reached], rotations[reached], atol=1e-7)
+
+
+def test_angles_lie_above_minus_pi_up_to_pi(rng):
+    axes, rest, long_axis = draw_joint(rng, 90)
+    half_turn = joint_rotations(
+        axes[:1], rest, long_axis, np.array([[np.pi], [-np.pi]]), np.zeros(2)
+    )
+    solved = solve(half_turn, axes[:1], rest, long_axis)
+    assert_allclose(np.abs(solved.angles[:, 0]), np.pi, atol=EXACT)
+    assert (solved.angles[:, 0] > -np.pi).all()
+
+
+@pytest.mark.parametrize(("branch", "most"), [("viterbi", 0.01), ("smallest-twist", 0.03)])
+def test_wide_swings_take_the_right_branch(rng, branch, most):
+    wrong, rules = [], []
+    for _ in range(4):
+        axes, rest, long_axis = draw_joint(rng, 80)
+        truth = smooth(rng, 600, [140, 60, 30])
+        rotations = joint_rotations(axes, rest, long_axis, truth[:, :2], truth[:, 2])
+        for found, rule in ((wrong, branch), (rules, "default-sign")):
+            angles = solve(rotations, axes, rest, long_axis, rule).angles[:, :2]
+            off = np.abs(np.angle(np.exp(1j * (angles - truth[:, :2])))).max(axis=1)
+            found.append((off > np.deg2rad(30)).mean())
+    assert np.mean(wrong) <= most
+    assert np.mean(rules) > 0.1  # the rest position's side alone is not enough
+
+
+def test_without_twist_the_path_stays_on_the_side_of_rest(rng):
+    axes, rest, long_axis = draw_joint(rng, 90)
+    truth = smooth(rng, 200, [60, 60, 170])
+    rotations = joint_rotations(axes, rest, long_axis, truth[:, :2], truth[:, 2])
+    solved = solve(rotations, axes, rest, long_axis, known=np.zeros(200, dtype=bool))
+    assert_allclose(solved.angles[:, :2], truth[:, :2], atol=EXACT)
+    assert np.isnan(solved.twists).all()
+
+
+def test_a_gap_leaves_all_other_frames_as_they_were(rng):
+    axes, rest, long_axis = draw_joint(rng, 100)
+    truth = smooth(rng, 80, [110, 60, 20])
+    rotations = joint_rotations(axes, rest, long_axis, truth[:, :2], truth[:, 2])
+    whole = solve(rotations, axes, rest, long_axis)
+    rotations[30:37] = np.nan
+    gappy = solve(rotations, axes, rest, long_axis)
+    assert np.isnan(gappy.angles[30:37]).all()
+    assert np.isnan(gappy.twists[30:37]).all()
+    seen = np.isfinite(rotations[:, 0, 0])
+    assert (gappy.angles[seen, :2] == whole.angles[seen, :2]).all()
+
+
+def test_the_singularity_measure_is_the_sine_of_the_angle_to_the_plane(rng):
+    axes, rest, long_axis = draw_joint(rng, 80, 90)
+    normal = np.cross(*axes)
+    normal /= np.linalg.norm(normal)
+    theta = np.linspace(-1.5, 1.5, 31)
+    rotations = joint_rotations(
+        axes, rest, long_axis, np.stack([theta, 0.3 * theta], axis=1), 0 * theta
+    )
+    before_proximal = joint_rotations(axes[:1], rest, long_axis, theta[:, None], 0 * theta)
+    expected = np.abs(before_proximal @ long_axis @ normal)
+    assert_allclose(solve(rotations, axes, rest, long_axis).sines, expected, atol=1e-7)
+
+
+def test_a_limb_along_the_proximal_axis_has_angles_all_the_same():
+    axes = np.eye(3)[[0, 1]]
+    for direction in (axes[1], -axes[1]):
+        turn, _ = Rotation.align_vectors([direction], [[0.0, 0.0, 1.0]])
+        solved = solve(turn.as_matrix()[None], axes, np.eye(3), np.array([0.0, 0.0, 1.0]))
+        assert np.isfinite(solved.angles[0, :2]).all()
+        assert solved.sines[0] < 1e-6
