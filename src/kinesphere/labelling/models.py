@@ -1,4 +1,28 @@
-"""The topological models that come with Kinesphere: one JSON file each, beside this one."""
+"""The topological models that come with Kinesphere: one JSON file each, beside this one.
+
+Where the numbers of their landmarks come from; all are along the axes of the standing body.
+
+Hips
+    Harrington et al. 2007 in the plane of ASIS and PSIS, with PW the distance of the ASIS and PD
+    that of their middle from the PSIS': 0.24 PD + 9.9 mm back, 0.30 PW + 10.9 mm down, 0.33 PW +
+    7.3 mm to the side. The constants are spread over a pelvis of PW 238 mm and PD 155 mm: 0.304 PD,
+    0.346 PW, 0.361 PW; back and side are weights of the markers, down is turned by the 12° by which
+    the plane dips to the front in standing. Without PSIS: Bell et al. 1989, 14 % of PW inward, 30 %
+    down, 22 % back. Against functional centres of two hips: 8 and 12 mm.
+Lumbar, neck
+    Reed et al. 1999, the men's numbers as quoted by Dumas et al. 2007
+    (doi:10.1016/j.jbiomech.2006.02.013): L5/S1 26 to 29 % of PW behind and 13 to 17 % above the
+    middle of the ASIS; C7/T1 55 % of the way from C7 to the breastbone, raised by 8°.
+Shoulders
+    Rab et al. 2002: 17 % of the distance of the acromia below the acromion.
+Knees, ankles, elbows
+    Half the width with marker and skin, in shares of the shank (LKNE to LANK) or the upper arm
+    (LSHO to LELB). Recordings with medial markers or measured widths have 52 to 78 mm on shanks of
+    380 to 440 mm (0.12 to 0.20; 0.14 taken), 35 to 50 mm (0.09 to 0.13; 0.10 taken), 48 to 55 mm on
+    upper arms of 290 to 320 mm (0.15 to 0.18; 0.14 taken, for smaller markers). Legs turn outward
+    in standing: the points come out some 20 mm behind the middle of the epicondyles, hence the
+    spread.
+"""
 
 import json
 from functools import cache
