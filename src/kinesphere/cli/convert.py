@@ -1,11 +1,14 @@
 """``kinesphere convert``: any readable format to any writable one."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from kinesphere.cli.options import JsonOption
+
+if TYPE_CHECKING:
+    from kinesphere.data import Solution
 
 
 def convert(
@@ -16,14 +19,19 @@ def convert(
     """Turn a file into another format.
 
     Nothing is lost where both can hold it. A recording goes to [bold].c3d[/bold],
-    [bold].trc[/bold] or [bold].csv[/bold], a solved folder also to [bold].bvh[/bold].
+    [bold].trc[/bold] or [bold].csv[/bold]; a solved folder to these (its angles, as
+    [bold].csv[/bold]), to [bold].bvh[/bold], [bold].osim[/bold], [bold].mot[/bold] and
+    [bold].json[/bold] (its skeleton).
 
     Example: [bold]kinesphere convert walk.c3d walk.trc[/bold]
     """
     from kinesphere.cli.console import print_json, print_warnings, stdout
+    from kinesphere.data import Solution
     from kinesphere.io import read, write
 
     found = read(source)
+    if isinstance(found, Solution):
+        found = part_for(found, target)
     write(found, target)
     warnings = [warning for step in getattr(found, "history", ()) for warning in step.warnings]
     size = target.stat().st_size if target.is_file() else None
@@ -33,3 +41,16 @@ def convert(
     console = stdout()
     console.print(f"{source} → {target}" + (f" ({size:,} bytes)" if size else ""), soft_wrap=True)
     print_warnings(console, warnings)
+
+
+def part_for(solution: "Solution", target: Path) -> object:
+    """Return what of a solution the target's format holds: the parameters rather than markers."""
+    from kinesphere.io import known_formats
+
+    parts = (solution.motion, solution.parameters, solution.skeleton, solution.recording)
+    suffix = target.suffix.lower()
+    for part in parts:
+        kind = type(part).__name__
+        if suffix and any(suffix in f.suffixes and kind in f.writers for f in known_formats()):
+            return part
+    return solution

@@ -147,9 +147,11 @@ def _up(
     found |= {"used": used, "from": source, "body": upright, "warnings": list(step.warnings)}
     said = f"the file says {recording.up}" if recording.up else "the file does not say"
     text = f"{used}, from the {source}: {said}"
-    if isinstance(upright, dict) and upright:
-        way, share = max(upright.items(), key=lambda item: float(str(item[1])))
-        text += f", the body stands along {way} in {float(str(share)):.0%} of the frames"
+    if isinstance(upright, dict):
+        shares = {way: share for way, share in upright.items() if isinstance(share, float)}
+        if shares:
+            way = max(shares, key=shares.__getitem__)
+            text += f", the body stands along {way} in {shares[way]:.0%} of the frames"
     found["text"] = text + ("; mirrored" if step.findings.get("mirrored") else "")
     return found
 
