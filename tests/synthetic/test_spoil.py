@@ -25,6 +25,11 @@ def performance():
 
 
 @pytest.fixture(scope="module")
+def short():
+    return make_performance(np.random.default_rng(12), rate=10, calibration_s=10, free_s=10)
+
+
+@pytest.fixture(scope="module")
 def recording(performance):
     return performance.recording
 
@@ -112,6 +117,12 @@ def test_ghosts_are_added_short_lived_and_unlabelled(recording, rng):
     seen = haunted.seen[:, n:].sum(axis=0) / 50
     assert (seen > 0).all()
     assert seen.mean() < 1.0
+    ghosts = haunted.markers[:, n:]
+    assert np.nanmax(np.linalg.norm(np.diff(ghosts, axis=0), axis=2)) <= 1.0 / 50 + EXACT
+    for g in range(7):
+        first = np.flatnonzero(haunted.seen[:, n + g])[0]
+        off = np.linalg.norm(recording.markers[first] - ghosts[first, g], axis=1)
+        assert 0.001 < off.min() <= 0.3 + EXACT
     again = spoil_with_ghosts(haunted, rng, n_ghosts=1)
     assert again.labels[-1] == "*7"
 
@@ -153,6 +164,29 @@ def test_soft_tissue_follows_the_pose(performance, recording, rng):
     fitted, *_ = np.linalg.lstsq(angles, flat, rcond=None)
     assert_allclose(angles @ fitted, flat, atol=EXACT)
     assert 0.001 < np.abs(flat).max() < 0.1
+
+
+def test_soft_tissue_slides_most_near_a_joint(short):
+    """Over many draws: near its joint by the rms asked for, elsewhere by what distance leaves."""
+    performance, recording = short, short.recording
+    limb = performance.skeleton.limb("head")
+    j = performance.skeleton.joint_names.index("neck")
+    joint = performance.skeleton.joints[j]
+    parameters = performance.parameters
+    angles = np.c_[parameters.angles[:, j, : joint.n_axes], parameters.twists[:, j]]
+    columns = recording.columns(limb.markers)
+    squares = np.zeros(len(columns))
+    n_draws = 150
+    for seed in range(n_draws):
+        generator = np.random.default_rng(seed)
+        spoiled = spoil_with_soft_tissue(
+            recording, generator, performance, per_radian=0.01, reach=0.1, wobble=0, shared=0.3
+        )
+        moved = (spoiled.markers - recording.markers)[:, columns]
+        squares += (moved**2).sum(axis=2).mean(axis=0) / n_draws
+    distance = np.linalg.norm(limb.marker_positions - joint.centre_in_child, axis=1)
+    expected = 0.01 * np.exp(-distance / 0.1) * np.sqrt((angles**2).sum(axis=1).mean())
+    assert_allclose(np.sqrt(squares), expected, rtol=0.2)
 
 
 def test_soft_tissue_wobbles_by_its_deviation_and_slowly(performance, recording, rng):

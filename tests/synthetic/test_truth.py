@@ -9,7 +9,12 @@ from scipy.spatial.transform import Rotation
 from kinesphere.data import Solution, motion_from_parameters
 from kinesphere.errors import BadRecording
 from kinesphere.geometry.rotations import rotation_about
-from kinesphere.synthetic import compare_with_truth, make_performance, worst_rows
+from kinesphere.synthetic import (
+    compare_with_truth,
+    make_performance,
+    spoil_with_swaps,
+    worst_rows,
+)
 from kinesphere.synthetic.retelling import angles_about_axes
 
 ROUNDING = 1e-6  # mm and deg
@@ -181,6 +186,41 @@ def test_joint_centres_of_hinges_count_across_their_axis(performance):
     found = errors(compare_with_truth(performance, solution))
     assert found["joint centre across the axis", "left_knee"] < ROUNDING
     assert found["joint centre along the axis, constant", "left_knee"] == pytest.approx(20)
+
+
+def test_a_wrong_length_is_wrong_by_that(performance):
+    limbs = tuple(
+        replace(limb, length=limb.length + 0.012) if limb.name == "right_thigh" else limb
+        for limb in performance.skeleton.limbs
+    )
+    truth = solved(performance)
+    skeleton = replace(performance.skeleton, limbs=limbs)
+    solution = replace(truth, parameters=replace(truth.parameters, skeleton=skeleton))
+    rows = compare_with_truth(performance, solution)
+    (row,) = (r for r in rows if r.measure == "segment length" and r.of == "right_thigh")
+    assert row.error == pytest.approx(12)
+    assert row.estimate - row.truth == pytest.approx(12)
+    assert errors(rows)["segment length", "left_thigh"] < ROUNDING
+
+
+def test_a_long_axis_the_other_way_round_turns_twists_round(performance):
+    j = performance.skeleton.joint_names.index("neck")
+    limbs = tuple(
+        replace(limb, long_axis=-limb.long_axis) if limb.name == "head" else limb
+        for limb in performance.skeleton.limbs
+    )
+    twists = performance.parameters.twists.copy()
+    twists[:, j] *= -1
+    skeleton = replace(performance.skeleton, limbs=limbs)
+    solution = solved(performance, skeleton=skeleton, twists=twists)
+    assert max(row.largest for row in compare_with_truth(performance, solution)) < ROUNDING
+
+
+def test_swapped_markers_do_not_tilt_the_world(performance, rng):
+    truth = solved(performance)
+    recording = spoil_with_swaps(truth.recording, rng, n_swaps=20, swap_s=3)
+    rows = compare_with_truth(performance, replace(truth, recording=recording))
+    assert max(row.largest for row in rows) < ROUNDING
 
 
 def test_a_shaken_joint_centre_has_no_constant_part(performance):

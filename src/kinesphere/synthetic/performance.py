@@ -27,7 +27,7 @@ from kinesphere.synthetic.plan import BodyPlan
 
 _ROAM_M = 1.5  # how far the root wanders in free motion
 _SWAY_M = 0.004  # standard deviation of the root's sway while calibrating
-_FLOOR_M = 0.02  # over this height the support passes smoothly from one foot to the other
+_FLOOR_M = 0.01  # over this height the support passes smoothly from one foot to the other
 _N_COMPARED = 80  # frames among which the range of motion is looked for
 
 
