@@ -102,7 +102,7 @@ BOMB = (
         (BOMB, "declares an XML document type"),
         ('<!DOCTYPE a SYSTEM "file:///etc/hostname"><a/>', "declares an XML document type"),
         ('<!DOCTYPE a [<!ENTITY e SYSTEM "file:///etc/hostname">]><a>&e;</a>', "document type"),
-        (MARKER_SET[:-30], "line 1, column"),
+        (MARKER_SET[:-30], r"line \d, column \d+ is no XML"),
         ("<a>&nothing;</a>", "undefined entity"),
         ('<?xml version="1.0" encoding="klingon"?><a/>', "is no XML"),
         ("<a/>", "holds no Marker"),

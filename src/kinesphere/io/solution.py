@@ -60,7 +60,7 @@ def write_solution(
     """
     extra = dict(extra or {})
     for name in extra:
-        if Path(name).name != name or name in FILES:
+        if name in ("", "..") or Path(name).name != name or name in FILES:
             raise BadSetting(f"{name!r} cannot be added: a plain name was expected, and a new one")
     ours = {*FILES, *_OTHERS, *extra}
 

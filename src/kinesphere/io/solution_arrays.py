@@ -70,7 +70,7 @@ def read_solution_arrays(path: Path) -> Solution:
         If the file is missing, damaged, or no solution.
     """
     try:
-        with np.load(path, allow_pickle=False) as entries:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as entries:
             content = json.loads(bytes(entries["tree"]))
             if content["format"] != SOLUTION_FORMAT:
                 raise UnreadableFile(
