@@ -287,6 +287,14 @@ class TestWhoShowsIt:
         assert step(world).findings["up_from"] == "extent"
         assert step(world).findings["up"] == up_in(export)
 
+    @pytest.mark.parametrize("n_frames", [1, 9])
+    @pytest.mark.parametrize("label", ["LTOE", "*0"])
+    def test_a_single_marker_is_no_error(self, rng, n_frames, label):
+        lone = Recording(rng.normal(size=(n_frames, 1, 3)), (label,), 60.0, up="+z")
+        world = orient(lone)
+        assert step(world).findings["up"] == "+z"
+        assert step(orient(replace(lone, up=None))).findings["up_from"] in ("floor", "assumed")
+
     @pytest.mark.parametrize("shape", [(0, 4), (6, 0), (6, 4)])
     def test_nothing_seen_is_no_error(self, shape):
         empty = Recording(np.full((*shape, 3), np.nan), tuple("abcd"[: shape[1]]), 60.0)

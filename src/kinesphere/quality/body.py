@@ -28,7 +28,7 @@ HEELS = ("HEE", "HEEL", "HEL", "FCC", "CAL", "FTB")
 ANKLES = ("ANK", "ANKLE", "FAL", "ANL", "LMAL")
 KNEES = ("KNE", "KNEE", "FLE", "LFC")
 
-_SIDED = re.compile(r"(?:(?P<side>[LR])(?:EFT|IGHT)?[_. ]?)?(?P<core>.+)", re.DOTALL)
+_SIDED = re.compile(r"(?:(?P<side>[LR])(?:EFT|IGHT)?[_. ]?)?(?P<core>.*)", re.DOTALL)
 
 
 class Body:

@@ -108,7 +108,7 @@ def _from_scene(evidence: Evidence) -> Judgement:
             up = DIRECTIONS[int(2 * steady + sway[steady].argmin())]
             return Judgement(up, "floor", (said.format("the end that stays in place", up),))
         tall, next_tall = np.argsort(-evidence.extent, kind="stable")[:2]
-        if evidence.extent[tall] >= TALLER * evidence.extent[next_tall]:
+        if evidence.extent[tall] > TALLER * evidence.extent[next_tall]:
             ends = np.abs(evidence.floor[2 * tall : 2 * tall + 2])
             up = DIRECTIONS[int(2 * tall + (ends[1] < ends[0]))]  # the floor is nearer to zero
             return Judgement(up, "extent", (said.format("the longest extent", up),))

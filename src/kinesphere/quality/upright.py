@@ -56,7 +56,8 @@ def find_evidence(recording: Recording, long_axes: Array) -> Evidence:
         return Evidence(unknown, unknown, unknown, unknown[:3])
     low, high = np.nanmin(points, axis=1), np.nanmax(points, axis=1)  # (n_frames, 3)
     extent = np.median(high - low, axis=0)
-    size = max(float(np.linalg.norm(extent)), np.finfo(float).tiny)
+    travel = high.max(axis=0) - low.min(axis=0)
+    size = float(np.linalg.norm(extent)) or float(np.linalg.norm(travel)) or 1.0
     ends = np.stack([low, -high], axis=2).reshape(len(points), 6)  # the order of DIRECTIONS
     spread = np.percentile(ends, 90, axis=0) - np.percentile(ends, 10, axis=0)
     along = long_axes @ np.array([vector(d) for d in DIRECTIONS]).T
