@@ -175,6 +175,7 @@ class TestAgainstTheFile:
         markers[22:, :, 1] += np.linspace(0, 0.5, 25)[:, None] * (markers[22:, :, 1] > 1.2)
         world = orient(replace(walker, markers=markers))
         assert step(world).findings["up"] == "+y"
+        assert step(world).warnings[0].endswith("with a steady floor: up is +y")
 
 
 class TestTheUser:

@@ -141,7 +141,9 @@ def test_up_without_a_model(read, name):
 
 
 def test_kneeling_and_prone_is_judged_by_the_floor(read):
-    found = step(orient(read("plates/KneeltoProne01.c3d"))).findings
+    world = orient(read("plates/KneeltoProne01.c3d"))
+    found = step(world).findings
+    assert "only in 51% of the frames the head is along +z" in step(world).warnings[0]
     assert 0.4 < found["upright_share"]["+x"] < 0.55
     assert 0.4 < found["upright_share"]["+z"] < 0.55
     assert found["floor_sway"]["+z"] < 0.5 * found["floor_sway"]["+x"]

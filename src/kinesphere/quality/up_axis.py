@@ -50,12 +50,15 @@ def judge_up(evidence: Evidence, field: UpAxis | None, wanted: UpAxis | None) ->
         doubt = seen is not None and strong and seen != wanted
         said = f"up is {wanted} as asked, although the head is along {seen} from the feet"
         return Judgement(wanted, "user", (said,) if doubt else ())
-    if field is None:
-        return Judgement(seen, "body") if seen is not None else _from_scene(evidence)
-    if seen is None or seen == field:
+    if seen is None:
+        return _from_scene(evidence) if field is None else Judgement(field, "file")
+    if seen == field:
         return Judgement(field, "file")
     share = evidence.upright[DIRECTIONS.index(seen)]
     found = f"in {share:.0%} of the frames the head is along {seen} from the feet"
+    if field is None:
+        said = f"the file names no up axis, and only {found}, with a steady floor: up is {seen}"
+        return Judgement(seen, "body", () if strong else (said,))
     if strong and (seen[1] == field[1] or _stands(evidence, seen, field)):
         said = f"the file says up is {field}, but {found}: up is {seen}"
         return Judgement(seen, "body", (said,))
