@@ -1,5 +1,6 @@
 """Against the synthetic actor, and against the published spread of the paper's frames."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -10,17 +11,30 @@ from kinesphere.normalization import NormalizationSettings, normalize
 from kinesphere.synthetic import make_performance
 
 SWAY = np.deg2rad(0.2)  # the actor's sway about its default pose, averaged over a minute
+MARKERS = np.deg2rad(25.0)  # a few markers at random about a limb, seen from its joint
 PAPER = NormalizationSettings(position="paper", body="plane", limbs="paper", frames="single")
 MANY = NormalizationSettings(speed=10.0, posture_margin=100.0)  # every pose is meant to count
 
 
 def test_the_actors_frames_are_found(rng):
+    """With markers the ends of chains point to their middle, else where the skeleton says."""
     truth = make_performance(rng, rate=10.0).motion
-    result = normalize(truth)
-    error = rotation_angle(np.swapaxes(truth.rotations, -1, -2) @ result.rotations)
-    assert error.max() < SWAY
-    assert np.abs(result.origins - truth.origins).max() < 1e-9
-    assert result.history[-1].warnings == ()
+    bare = tuple(
+        replace(limb, markers=(), marker_positions=np.empty((0, 3)))
+        for limb in truth.skeleton.limbs
+    )
+    without = replace(truth, skeleton=replace(truth.skeleton, limbs=bare))
+    inner = sorted(set(truth.skeleton.parents[1:]))
+    for motion, limbs, error in (
+        (without, list(range(len(bare))), SWAY),
+        (truth, inner, SWAY),
+        (truth, list(range(len(bare))), MARKERS),
+    ):
+        result = normalize(motion)
+        off = rotation_angle(np.swapaxes(truth.rotations, -1, -2) @ result.rotations)
+        assert off[:, limbs].max() < error
+        assert np.abs(result.origins - truth.origins)[:, inner].max() < 1e-9
+        assert result.history[-1].warnings == ()
 
 
 def axis_deviations(tools, rng, settings, n_frames):

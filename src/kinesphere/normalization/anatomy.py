@@ -34,6 +34,8 @@ _PROXIMAL_JOINT = {
 
 _TOO_SHORT = 1e-6  # m; a direction between points closer than this is rounding error
 
+_ROW = 1.5  # times longer than wide from which points lie in a row
+
 
 def without_side(name: str) -> str:
     """Return the limb's name without ``left_`` or ``right_``."""
@@ -103,10 +105,10 @@ class Anatomy:
         """(n_limbs, 3) unit vectors along each limb, proximal to distal; NaN where unknown.
 
         From joint to joint; along the principal direction of the joints where a limb carries
-        several. At the end of a chain: of a head from the neck to the middle of its markers, which
-        sit around it; else the long axis that the skeleton measured, or from the joint to the
-        middle of the markers, or where these spread most. The limbs that get the body frame have
-        none.
+        several. At the end of a chain from the joint to the middle of the markers, which is surer
+        than any one of them; a foot points where its joint and markers lie in a row, from heel to
+        toes; without markers the skeleton's long axis counts. The limbs that get the body frame
+        have none.
         """
         rows = [self._direction(i) for i in range(len(self.skeleton.limbs))]
         return np.array(rows).reshape(-1, 3)
@@ -176,13 +178,15 @@ class Anatomy:
             points = np.vstack([begin[None], carried])
             points = points[np.isfinite(points).all(axis=1)]
             return _principal(points, carried.mean(axis=0) - begin)
-        outward = _centroid(it) - begin
-        around = it.name == "head" and np.isfinite(it.marker_positions).all(axis=1).sum() >= 3
-        if np.isfinite(it.long_axis).all() and not around:
+        markers = it.marker_positions[np.isfinite(it.marker_positions).all(axis=1)]
+        if not len(markers):
             return _unit(it.long_axis)
-        if np.linalg.norm(outward) > 1e-3 * np.nan_to_num(it.length, nan=1.0):
-            return _unit(outward)
-        return _principal(it.marker_positions, outward)
+        points = np.vstack([begin[None], markers])
+        points = points[np.isfinite(points).all(axis=1)]
+        outward = markers.mean(axis=0) - begin
+        row = without_side(it.name) == "foot" and _elongation(points) > _ROW
+        at_joint = not np.linalg.norm(outward) > 1e-3 * np.ptp(points, axis=0).max()
+        return _principal(points, outward) if row or at_joint else _unit(outward)
 
     def _distal_end(self, limb: int) -> Array:
         it, carried = self.skeleton.limbs[limb], self._carried(limb)
@@ -218,9 +222,14 @@ def _unit(vector: Array) -> Array:
     return vector / length if length > _TOO_SHORT else np.full(3, np.nan)
 
 
+def _elongation(points: Array) -> float:
+    """Return how many times longer than wide the points spread."""
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return float(spread[0] / max(spread[1], 1e-12)) if len(spread) > 1 else np.inf
+
+
 def _principal(points: Array, outward: Array) -> Array:
     """Return the direction in which the points spread most, on the side of ``outward``."""
-    points = points[np.isfinite(points).all(axis=1)]
     if len(points) < 2:
         return np.full(3, np.nan)
     _, spread, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)

@@ -28,6 +28,8 @@ class PositionCost:
     """Name with unit → (n,) what the cost was made of, for people."""
     margin: float
     """Frames whose cost exceeds the best by no more than this are as good as the best."""
+    absolute: bool
+    """True where a cost of 0 is a perfect default position, whatever the other frames are like."""
 
 
 def posture_cost(samples: Samples, settings: NormalizationSettings) -> PositionCost:
@@ -54,7 +56,7 @@ def posture_cost(samples: Samples, settings: NormalizationSettings) -> PositionC
     cost += _term(plane / span, settings.plane_distance)
     cost += np.minimum(_term(speed / span, settings.speed), _FAST)
     terms = {**angles, "plane_distance_mm": 1e3 * plane, "speed_mm_per_s": 1e3 * speed}
-    return PositionCost(_smooth(cost, samples, settings), terms, settings.posture_margin)
+    return PositionCost(_smooth(cost, samples, settings), terms, settings.posture_margin, True)
 
 
 def paper_cost(samples: Samples, settings: NormalizationSettings) -> PositionCost:
@@ -88,7 +90,7 @@ def paper_cost(samples: Samples, settings: NormalizationSettings) -> PositionCos
         "reach_mm": 1e3 * reach,
         "speed_mm_per_s": 1e3 * speed,
     }
-    return PositionCost(_smooth(cost, samples, settings), terms, settings.paper_margin)
+    return PositionCost(_smooth(cost, samples, settings), terms, settings.paper_margin, False)
 
 
 def posture_angles(samples: Samples, template: str) -> dict[str, Array]:

@@ -14,6 +14,7 @@ from kinesphere.normalization.body_frame import TURNED_ROUND
 from kinesphere.normalization.default_position import (
     JOINTS_OF_A_PLANE,
     PositionCost,
+    joint_speeds,
     paper_cost,
     posture_angles,
     posture_cost,
@@ -27,6 +28,7 @@ from kinesphere.normalization.settings import NormalizationSettings
 
 _DEFAULTS = NormalizationSettings()
 _SHARE, _MOST_SHARED = 0.1, 1.0  # of the best cost: where nothing is good, differences count less
+_STRIDE = 0.5  # of the best cost: enough to reach over a whole stride
 _WIDE = np.deg2rad(10.0)  # spread of the body frames from which the average is in doubt
 
 
@@ -71,7 +73,7 @@ def normalize(
     best = int(np.argmin(cost))
     chosen = np.arange(len(cost)) == best
     if settings.frames == "many" and not proposal.only_best:
-        chosen = cost <= cost[best] + position.margin + min(_SHARE * abs(cost[best]), _MOST_SHARED)
+        chosen = cost <= cost[best] + _margin(samples, position, cost[best], settings, best)
     in_root = proposal.root_from_body
     mean_body = robust_mean_rotations(in_root[chosen][:, None])[0]
     carried = samples.rotations[:, 0] @ mean_body
@@ -88,6 +90,24 @@ def normalize(
     findings = _findings(samples, best, chosen, cost, terms | angles, spread, verdict, alignment)
     findings |= {"body_frame": proposal.method, "good_default_position": not reasons}
     return _normalized(samples, alignment, settings, findings, warnings)
+
+
+def _margin(
+    samples: Samples,
+    position: PositionCost,
+    cost: float,
+    settings: NormalizationSettings,
+    best: int,
+) -> float:
+    """Return the cost above the best up to which frames are averaged in.
+
+    Where nothing is good, differences count less. Somebody who never stands still is averaged over
+    whole strides: in each half of one, pelvis and shoulders turn the opposite way.
+    """
+    moves = joint_speeds(samples)[best] > settings.speed * samples.anatomy.span
+    if moves and position.absolute:
+        return _STRIDE * cost
+    return position.margin + min(_SHARE * abs(cost), _MOST_SHARED)
 
 
 def _position(
