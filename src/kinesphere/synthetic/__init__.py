@@ -3,6 +3,8 @@
 from kinesphere.synthetic.actor import Actor as Actor
 from kinesphere.synthetic.actor import make_actor as make_actor
 from kinesphere.synthetic.bodies import HUMAN as HUMAN
+from kinesphere.synthetic.creatures import HAND as HAND
+from kinesphere.synthetic.creatures import QUADRUPED as QUADRUPED
 from kinesphere.synthetic.performance import Performance as Performance
 from kinesphere.synthetic.performance import make_performance as make_performance
 from kinesphere.synthetic.plan import BodyPlan as BodyPlan

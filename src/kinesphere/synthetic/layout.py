@@ -17,6 +17,7 @@ Placed: TypeAlias = dict[str, tuple[list[str], Array]]
 """Limb → labels and (n_markers, 3) m in the limb frame."""
 
 _SPREAD_M = (0.05, 0.10)  # rms distance of a body's markers from their centroid
+_SPREAD_SHARE = (0.25, 0.5)  # of the limb's length, where that is less: fingers are thin
 _SLACK = 1 + 1e-9
 _LEAST_WIDTH = 0.35  # of the second principal extent against the first: far from a line
 _LEAST_GAP = 0.35  # of the closest pair against the spread: two markers stay two
@@ -40,42 +41,54 @@ def marker_bodies(rng: np.random.Generator, actor: Actor) -> Placed:
         n_markers = int(rng.integers(3, 6))
         along = rng.uniform(-0.2, 0.2) * limb.length * limb.long_axis
         if limb.name in carriers:
-            points = along + rng.normal(scale=0.02, size=3) + _scattered(rng, n_markers)
+            least, _ = _spread_of(limb)
+            off_axis = rng.normal(scale=0.4 * least, size=3)
+            points = along + off_axis + _scattered(rng, n_markers, limb)
         else:
             points = _pointing(rng, n_markers, limb, along)
         bodies[limb.name] = [f"{limb.name}{i + 1}" for i in range(n_markers)], points
     return bodies
 
 
-def _scattered(rng: np.random.Generator, n_markers: int) -> Array:
+def _spread_of(limb: Limb) -> tuple[float, float]:
+    """Return the least and largest spread of the limb's markers in m."""
+    least, most = (
+        min(metres, share * limb.length)
+        for metres, share in zip(_SPREAD_M, _SPREAD_SHARE, strict=True)
+    )
+    return least, most
+
+
+def _scattered(rng: np.random.Generator, n_markers: int, limb: Limb) -> Array:
     """Draw points about the origin, neither in a line nor on top of each other."""
     while True:
         points = rng.normal(size=(n_markers, 3))
         points -= points.mean(axis=0)
-        points *= rng.uniform(*_SPREAD_M) / np.sqrt((points**2).sum(axis=1).mean())
-        if _is_body(points):
+        points *= rng.uniform(*_spread_of(limb)) / np.sqrt((points**2).sum(axis=1).mean())
+        if _is_body(points, limb):
             return points
 
 
 def _pointing(rng: np.random.Generator, n_markers: int, limb: Limb, along: Array) -> Array:
     """Draw points whose centroid, and the farthest of which from the joint, tell the long axis."""
     while True:
-        points = _scattered(rng, n_markers)
+        points = _scattered(rng, n_markers, limb)
         aside = points - np.outer(points @ limb.long_axis, limb.long_axis)
         last = int(np.argmax(points @ limb.long_axis))
         others = np.arange(n_markers) != last
         points[others] += aside[last] / (n_markers - 1)
         points[last] -= aside[last]
         from_joint = points + along + limb.length / 2 * limb.long_axis
-        if np.linalg.norm(from_joint, axis=1).argmax() == last and _is_body(points):
+        if np.linalg.norm(from_joint, axis=1).argmax() == last and _is_body(points, limb):
             return np.asarray(points + along)
 
 
-def _is_body(points: Array) -> bool:
+def _is_body(points: Array, limb: Limb) -> bool:
+    least, most = _spread_of(limb)
     extents = np.linalg.svd(points, compute_uv=False)
     gaps = np.linalg.norm(points[:, None] - points, axis=2)[np.triu_indices(len(points), 1)]
     spread = np.sqrt((points**2).sum(axis=1).mean())
-    fits = _SPREAD_M[0] <= spread * _SLACK and spread <= _SPREAD_M[1] * _SLACK
+    fits = least <= spread * _SLACK and spread <= most * _SLACK
     return bool(
         fits and extents[1] > _LEAST_WIDTH * extents[0] and gaps.min() > _LEAST_GAP * spread
     )
