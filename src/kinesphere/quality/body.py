@@ -32,7 +32,7 @@ _SIDED = re.compile(r"(?:(?P<side>[LR])(?:EFT|IGHT)?[_. ]?)?(?P<core>.*)", re.DO
 
 
 class Body:
-    """One person's markers, found by their customary names or by the segments of a model."""
+    """One person's markers, found by their customary names."""
 
     def __init__(self, recording: Recording, columns: Mapping[str, int]) -> None:
         """Take the markers at ``columns`` (name without subject, any case → column)."""

@@ -7,6 +7,7 @@ on which way is up in the file, nor on posture, if each triple is taken within o
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from kinesphere.quality.body import Body, unit
 DECISIVE = 0.2
 """Least |(up × left-to-right) · forward| of unit vectors that says anything: a part whose three
 directions lie nearly in a plane may tip over by noise alone."""
+
+_SHOULDERS = ("SHO", "SHOULDER", "FSH", "BSH", "ACR")
 
 
 @dataclass(frozen=True)
@@ -29,63 +32,66 @@ class Chirality:
     """Number of part-frames that decide; 0: nothing known."""
 
 
+class _Part(NamedTuple):
+    """Two points along each of the three directions of one body part, (n_frames, 3) m each."""
+
+    bottom: Array | None
+    top: Array | None
+    left: Array | None
+    right: Array | None
+    back: Array | None
+    front: Array | None
+
+
 def find_chirality(bodies: Iterable[Body]) -> Chirality:
     """Return how the trunk, the pelvis and the feet of every body and frame are turned."""
-    volumes = [v for body in bodies for part in _parts(body) if (v := _volume(*part)) is not None]
+    volumes = [v for body in bodies for part in _parts(body) if (v := _volume(part)) is not None]
     together: Array = np.concatenate([*volumes, np.empty(0)])
     decisive = together[np.abs(together) > DECISIVE]  # NaN compares as False
     right = float(np.mean(decisive > 0)) if len(decisive) else float("nan")
     return Chirality(right, len(decisive))
 
 
-def _parts(body: Body) -> list[tuple[Array | None, ...]]:
-    """Return (top, bottom, right, left, front, back) of every part that is its own witness."""
+def _parts(body: Body) -> list[_Part]:
+    """Return the parts whose markers tell all three directions, if the body has them."""
     waist = (*names.WAIST_FRONT, *names.WAIST_BACK)
-    right, left = (body.side(side, (*waist, *names.HIPS)) for side in "RL")
-    shoulders = ("SHO", "SHOULDER", "FSH", "BSH", "ACR")
-    trunk = (
-        body.middle("C7", "CLAV"),
-        body.middle("T10", "STRN"),
-        body.side("R", shoulders),
-        body.side("L", shoulders),
-        body.middle("CLAV", "STRN"),
-        body.middle("C7", "T10"),
+    left, right = (body.side(side, (*waist, *names.HIPS)) for side in "LR")
+    trunk = _Part(
+        bottom=body.middle("T10", "STRN"),
+        top=body.middle("C7", "CLAV"),
+        left=body.side("L", _SHOULDERS),
+        right=body.side("R", _SHOULDERS),
+        back=body.middle("C7", "T10"),
+        front=body.middle("CLAV", "STRN"),
     )
-    pelvis = (
-        body.middle("C7", "CLAV"),
-        body.middle(*waist),
-        right,
-        left,
-        body.middle(*names.WAIST_FRONT),
-        body.middle(*names.WAIST_BACK),
+    pelvis = _Part(
+        bottom=body.middle(*waist),
+        top=body.middle("C7", "CLAV"),
+        left=left,
+        right=right,
+        back=body.middle(*names.WAIST_BACK),
+        front=body.middle(*names.WAIST_FRONT),
     )
-    feet = [
-        (
-            body.side(side, names.KNEES),
-            body.side(side, names.ANKLES),
-            right,
-            left,
-            body.side(side, names.TOES),
-            _first(body.side(side, names.HEELS), body.side(side, names.ANKLES)),
-        )
-        for side in "LR"
-    ]
-    return [trunk, pelvis, *feet]
+    return [trunk, pelvis, *(_foot(body, side, left, right) for side in "LR")]
 
 
-def _first(*points: Array | None) -> Array | None:
-    return next((point for point in points if point is not None), None)
+def _foot(body: Body, side: str, left: Array | None, right: Array | None) -> _Part:
+    ankle, heel = body.side(side, names.ANKLES), body.side(side, names.HEELS)
+    return _Part(
+        bottom=ankle,
+        top=body.side(side, names.KNEES),  # the shank's up: no foot points behind its shank
+        left=left,
+        right=right,
+        back=ankle if heel is None else heel,
+        front=body.side(side, names.TOES),
+    )
 
 
-def _volume(
-    top: Array | None,
-    bottom: Array | None,
-    right: Array | None,
-    left: Array | None,
-    front: Array | None,
-    back: Array | None,
-) -> Array | None:
-    up, rightward, forward = _between(bottom, top), _between(left, right), _between(back, front)
+def _volume(part: _Part) -> Array | None:
+    """Return (up × left-to-right) · forward of unit vectors, (n_frames,); positive: as it should."""
+    up = _between(part.bottom, part.top)
+    rightward = _between(part.left, part.right)
+    forward = _between(part.back, part.front)
     if up is None or rightward is None or forward is None:
         return None
     return np.asarray((np.cross(up, rightward) * forward).sum(axis=1))
