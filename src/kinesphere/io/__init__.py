@@ -4,6 +4,8 @@ from kinesphere.io import formats as formats
 from kinesphere.io.atomic import replacing as replacing
 from kinesphere.io.atomic import replacing_directory as replacing_directory
 from kinesphere.io.bvh import write_bvh as write_bvh
+from kinesphere.io.c3d import read_c3d as read_c3d
+from kinesphere.io.c3d import write_c3d as write_c3d
 from kinesphere.io.csv import read_csv as read_csv
 from kinesphere.io.csv import write_csv as write_csv
 from kinesphere.io.model_json import model_json_schema as model_json_schema

@@ -6,8 +6,10 @@ from kinesphere.io.registry import Format, register
 
 
 def _is_c3d(head: bytes) -> bool:
-    # byte 1 points at the parameter section, byte 2 is always 80; text holds no null character
-    return len(head) > 1 and head[0] > 1 and head[1] == 80 and b"\0" in head
+    # byte 1 points at the parameter section, byte 2 is always 80, a P: in text, which holds no null
+    # character, and in PNG images as well
+    marked = len(head) > 1 and head[0] > 1 and head[1] == 80
+    return marked and b"\0" in head and not head.startswith(b"\x89PNG")
 
 
 register(

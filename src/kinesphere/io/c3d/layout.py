@@ -68,14 +68,14 @@ def layout_of(content: bytes) -> Layout:
     is_float, scale = _scale(header, section, warnings)
     data_start = _data_start(content, start, header, section, warnings)
     words_per_frame = 4 * n_points + per_frame * n_channels
-    if words_per_frame == 0:
-        raise UnreadableFile("the file holds neither points nor analog channels")
-    frame_bytes = words_per_frame * (4 if is_float else 2)
     n_frames = _n_frames(header, section)
     if n_frames < 1:
         raise UnreadableFile(
             f"the file holds no frames (first is {header.first_frame}, last {header.last_frame})"
         )
+    if words_per_frame == 0:
+        raise UnreadableFile("the file holds neither points nor analog channels")
+    frame_bytes = words_per_frame * (4 if is_float else 2)
     present = max(0, len(content) - data_start) // frame_bytes
     if n_frames > present:
         raise UnreadableFile(
@@ -175,7 +175,7 @@ def _data_start(
             if block != header.data_block:
                 warnings.append(f"the header lets the data start at block {header.data_block}; "
                                 f"POINT:DATA_START {said} is taken")  # fmt: skip
-            if start >= len(content):
+            if start > len(content):
                 break
             return start
     raise UnreadableFile(

@@ -120,8 +120,9 @@ class Section:
             at = [i for i, p in enumerate(content) if p.name.upper() == new.name.upper()]
             if at:
                 was = content[at[-1]]
+                same_size = new.kind != CHAR and prod(new.dims) == prod(was.dims)
                 content[at[-1]] = replace(
-                    new, name=was.name, description=was.description, locked=was.locked
+                    was, kind=new.kind, dims=was.dims if same_size else new.dims, data=new.data
                 )
             else:
                 content.append(new)
