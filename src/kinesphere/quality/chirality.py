@@ -88,7 +88,7 @@ def _foot(body: Body, side: str, left: Array | None, right: Array | None) -> _Pa
 
 
 def _volume(part: _Part) -> Array | None:
-    """Return (up × left-to-right) · forward of unit vectors, (n_frames,); positive: as it should."""
+    """Return (up × left-to-right) · forward of unit vectors, (n_frames,); right: positive."""
     up = _between(part.bottom, part.top)
     rightward = _between(part.left, part.right)
     forward = _between(part.back, part.front)
