@@ -218,6 +218,15 @@ def test_a_solved_folder_tells_of_itself_and_converts(solved, call, tmp_path):
 
 
 @pytest.mark.slow
+def test_files_of_a_solved_folder_tell_of_themselves(solved, call):
+    folder, _ = solved
+    for name in ("skeleton.json", "parameters.csv"):
+        shown = json.loads(ok(call("info", folder / name, "--json")))
+        assert shown["kind"] == "skeleton"
+        assert "left_knee to left_thigh" in ok(call("info", folder / name))
+
+
+@pytest.mark.slow
 def test_solving_a_solved_folder_is_refused(solved, call, tmp_path):
     called = call("solve", solved[0], "-o", tmp_path / "x")
     assert called.code == 2

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -14,8 +15,10 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeEl
 from rich.table import Table
 from rich.text import Text
 
-_WIDTH = 110
+_WIDTH = 120
 """Columns where stdout is no terminal: wide enough for every table."""
+_LONG = 240
+"""Characters of a warning that fill two lines and more."""
 
 
 def stdout() -> Console:
@@ -86,7 +89,9 @@ def print_table(
     for i, name in enumerate(header):
         justify: Any = "right" if right[i : i + 1] == "r" else "left"
         style = "bold" if i == 0 else ""
-        table.add_column(Text(name), justify=justify, overflow="fold", style=style)
+        table.add_column(
+            Text(name), justify=justify, overflow="fold", style=style, no_wrap=justify == "right"
+        )
     for row in rows:
         table.add_row(*(Text(plain(cell)) for cell in row))
     console.print(table)
@@ -105,10 +110,13 @@ def print_setting(
 
 
 def print_warnings(console: Console, warnings: Sequence[str]) -> None:
-    """Print what a person should not miss."""
+    """Print what a person should not miss; of a long one, what stands in brackets is left out."""
     for warning in warnings:
+        text = warning
+        if len(text) > _LONG:
+            text = re.sub(r" \([^()]*\)", "", text) + " (why: in the report)"
         line = Text("! ", style="bold yellow")
-        line.append(plain(warning), style="not bold yellow")
+        line.append(plain(text), style="not bold yellow")
         console.print(line)
 
 

@@ -1,18 +1,17 @@
-"""A solution or a model in figures, for machines and for people."""
+"""A solution in figures, for machines and for people."""
 
 from typing import Any
 
 import numpy as np
 
 from kinesphere.cli.console import (
-    print_pairs,
     print_table,
     print_title,
     print_warnings,
     stdout,
 )
 from kinesphere.cli.stages import stage_in_words
-from kinesphere.data import Solution, TopologicalModel
+from kinesphere.data import Solution
 from kinesphere.io.summary import summary_of
 from kinesphere.report import JointRow, joint_rows, rms, unique
 
@@ -84,49 +83,3 @@ def _joint_cells(row: JointRow) -> tuple[str, ...]:
         angles,
         row.angles[-1],
     )
-
-
-def describe_model(model: TopologicalModel) -> dict[str, Any]:
-    """Return what a topological model holds."""
-    return {
-        "kind": "model",
-        "name": model.name,
-        "description": model.description,
-        "root": model.root,
-        "segments": [
-            {"name": s.name, "markers": list(s.markers), "shared": list(s.shared)}
-            for s in model.segments
-        ],
-        "joints": [
-            {"name": j.name, "parent": j.parent, "child": j.child, "n_axes": j.n_axes}
-            for j in model.joints
-        ],
-        "required": list(model.required),
-        "learnt_from": [statistics.recording for statistics in model.statistics],
-    }
-
-
-def show_model(summary: dict[str, Any]) -> None:
-    """Print the model as a table."""
-    console = stdout()
-    n_markers = sum(len(segment["markers"]) for segment in summary["segments"])
-    print_title(
-        console,
-        summary["name"],
-        f"{len(summary['segments'])} segments, {n_markers} markers, root {summary['root']}",
-    )
-    if summary["description"]:
-        print_pairs(console, [("", summary["description"])])
-    joints = {joint["child"]: joint for joint in summary["joints"]}
-    rows = []
-    for segment in summary["segments"]:
-        joint = joints.get(segment["name"])
-        rows.append(
-            (
-                segment["name"],
-                f"{joint['name']} to {joint['parent']}" if joint else "root",
-                ", ".join(segment["markers"]) or "–",
-                ", ".join(segment["shared"]),
-            )
-        )
-    print_table(console, ("segment", "joint", "markers", "shared"), rows)

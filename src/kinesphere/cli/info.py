@@ -11,7 +11,7 @@ from kinesphere.cli.options import BadArgument, JsonOption, SubjectOption
 def info(
     file: Annotated[
         Path,
-        typer.Argument(help="A recording (C3D, TRC), a solved folder or a model."),
+        typer.Argument(help="A recording, a solved folder, or a file of one; a model."),
     ],
     subject: SubjectOption = None,
     as_json: JsonOption = False,
@@ -21,14 +21,15 @@ def info(
     Example: [bold]kinesphere info walk.c3d[/bold]
     """
     from kinesphere.cli.console import print_json
-    from kinesphere.cli.describe_recording import describe_recording, show_recording
-    from kinesphere.cli.describe_solution import (
+    from kinesphere.cli.describe_model import (
         describe_model,
-        describe_solution,
+        describe_skeleton,
         show_model,
-        show_solution,
+        show_skeleton,
     )
-    from kinesphere.data import Recording, Solution, TopologicalModel
+    from kinesphere.cli.describe_recording import describe_recording, show_recording
+    from kinesphere.cli.describe_solution import describe_solution, show_solution
+    from kinesphere.data import Parameters, Recording, Skeleton, Solution, TopologicalModel
     from kinesphere.io import read
 
     found = read(file)
@@ -38,6 +39,8 @@ def info(
         summary = describe_solution(found)
     elif isinstance(found, TopologicalModel):
         summary = describe_model(found)
+    elif isinstance(found, Skeleton | Parameters):
+        summary = describe_skeleton(found if isinstance(found, Skeleton) else found.skeleton)
     else:
         raise BadArgument(f"{file} holds a {type(found).__name__}, which info cannot describe")
     summary = {"file": str(file), **summary}
@@ -47,5 +50,7 @@ def info(
         show_recording(summary)
     elif isinstance(found, Solution):
         show_solution(summary, found)
+    elif summary["kind"] == "skeleton":
+        show_skeleton(summary)
     else:
         show_model(summary)

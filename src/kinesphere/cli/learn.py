@@ -31,7 +31,7 @@ def model(
     Example: [bold]kinesphere model trial1.c3d trial2.c3d -o layout.json[/bold]
     """
     from kinesphere.cli.console import print_json, progress_bar, stdout
-    from kinesphere.cli.describe_solution import describe_model, show_model
+    from kinesphere.cli.describe_model import describe_model, show_model
     from kinesphere.cli.files import read_recording
     from kinesphere.io import read_segments, write_model
     from kinesphere.skeleton import learn_model

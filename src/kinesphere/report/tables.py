@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from kinesphere.data import Array, Joint, JointFlag, PoseFlag, Solution, Step
+from kinesphere.data import Array, Joint, JointFlag, Json, PoseFlag, Solution, Step
 from kinesphere.report.scene import side_of
 from kinesphere.report.wording import finding_in_words, number_in_words
 
@@ -61,12 +61,22 @@ class LimbRow:
 
 
 @dataclass(frozen=True)
+class FindingTable:
+    """What a step found of each joint or limb."""
+
+    name: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
 class StepCard:
     """One step of the history."""
 
     name: str
     seconds: str
     findings: tuple[tuple[str, str], ...]
+    tables: tuple[FindingTable, ...]
     warnings: tuple[str, ...]
     settings: tuple[tuple[str, str], ...]
     version: str
@@ -159,7 +169,10 @@ def step_cards(solution: Solution) -> list[StepCard]:
             StepCard(
                 name=in_words(step.name),
                 seconds="" if seconds is None else number_in_words(seconds, "s"),
-                findings=tuple(finding_in_words(k, v) for k, v in step.findings.items()),
+                findings=tuple(
+                    finding_in_words(k, v) for k, v in step.findings.items() if not _is_table(v)
+                ),
+                tables=tuple(_table(k, v) for k, v in step.findings.items() if _is_table(v)),
                 warnings=step.warnings,
                 settings=settings_rows(step),
                 version=step.version,
@@ -176,6 +189,29 @@ def settings_rows(step: Step) -> tuple[tuple[str, str], ...]:
 def in_words(name: str) -> str:
     """Return a name as a person writes it: ``left_upper_arm`` → ``left upper arm``."""
     return name.replace("_", " ")
+
+
+def _is_table(value: Json) -> bool:
+    return isinstance(value, dict) and any(isinstance(row, dict) for row in value.values())
+
+
+def _table(name: str, found: Any) -> FindingTable:
+    """Return a dictionary of dictionaries as rows; lists and further dictionaries stay out."""
+    entries = {key: row for key, row in found.items() if isinstance(row, dict)}
+    keys = dict.fromkeys(
+        key
+        for row in entries.values()
+        for key, value in row.items()
+        if not isinstance(value, dict | list)
+    )
+    return FindingTable(
+        name=in_words(name),
+        header=tuple(finding_in_words(key, None)[0] for key in keys),
+        rows=tuple(
+            (in_words(entry), *(finding_in_words(key, row.get(key))[1] for key in keys))
+            for entry, row in entries.items()
+        ),
+    )
 
 
 def _flat(settings: Any, above: str = "") -> list[tuple[str, str]]:

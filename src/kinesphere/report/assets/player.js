@@ -266,7 +266,7 @@ class Player {
           context.fill();
           context.stroke();
           if (this.show.names && radius > 2.2) {
-            context.fillStyle = theme.text;
+            context.fillStyle = theme.dim;
             context.font = "10px system-ui, sans-serif";
             context.fillText(marker.label, at[0] + radius + 3, at[1] + 3);
           }
