@@ -1,6 +1,7 @@
 """read_trc and write_trc: every spelling of a gap, every way a file can be damaged."""
 
 import re
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -316,6 +317,19 @@ def test_written_and_read_again(recording, tmp_path, unit):
     write_trc(again, tmp_path / "b.trc", unit=unit)
     first, second = ((tmp_path / f"{x}.trc").read_text().split("\n")[1:] for x in "ab")
     assert first == second
+
+
+def test_opensim_reads_what_is_written(recording, tmp_path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # its bindings are SWIG's
+        osim = pytest.importorskip("opensim")
+    named = replace(recording, labels=("A", "B", "C", "D", "E"))
+    write_trc(named, tmp_path / "a.trc", unit="m")
+    table = osim.TimeSeriesTableVec3(str(tmp_path / "a.trc"))
+    assert tuple(table.getColumnLabels()) == named.labels
+    columns = [table.getDependentColumn(label) for label in named.labels]
+    values = [[[c[f][k] for k in range(3)] for c in columns] for f in range(named.n_frames)]
+    assert_allclose(values, recording.markers, atol=PRINTED, rtol=0)
 
 
 def test_the_registry_knows_it_by_content(recording, tmp_path):

@@ -61,8 +61,10 @@ def parse_table(
     return Table(values, numbers)
 
 
-def format_rows(columns: Iterable[NDArray[Any]], formats: Iterable[str], separator: str) -> str:
-    """Return rows of text, one line each; NaN becomes a blank cell.
+def format_rows(
+    columns: Iterable[NDArray[Any]], formats: Iterable[str], separator: str, gap: str = ""
+) -> str:
+    """Return rows of text, one line each.
 
     Parameters
     ----------
@@ -70,6 +72,8 @@ def format_rows(columns: Iterable[NDArray[Any]], formats: Iterable[str], separat
         Each (n_rows, k).
     formats
         printf format of the numbers of each block of columns.
+    gap
+        What stands for NaN.
     """
     blocks = list(columns)
     form = separator.join(
@@ -77,7 +81,7 @@ def format_rows(columns: Iterable[NDArray[Any]], formats: Iterable[str], separat
     )
     rows = np.hstack(blocks).tolist()
     text = "\n".join([form % tuple(row) for row in rows])
-    return text.replace("nan", "") + "\n" if rows else ""
+    return text.replace("nan", gap) + "\n" if rows else ""
 
 
 def rate_from_times(times: Array, slack: float) -> float | None:

@@ -1,7 +1,7 @@
 """TRC, the marker format of OpenSim and Motion Analysis: five lines of header, a row a frame.
 
 In: every spelling of a gap, tabs or runs of blanks, any line end. Out: millimetres with six
-decimals, gaps as blank cells.
+decimals, gaps as NaN.
 """
 
 import re
@@ -113,8 +113,8 @@ def read_trc(path: str | Path) -> Recording:
 def write_trc(recording: Recording, path: str | Path, unit: str = "mm") -> None:
     """Write a TRC file in the axes the recording's own file had.
 
-    Coordinates are printed to 1e-6 mm (at least), gaps as blank cells. Outputs, analog channels
-    and events have no place in a TRC file and stay out.
+    Coordinates are printed to 1e-6 mm (at least), gaps as NaN: OpenSim 4.6 refuses a row whose
+    last cell is blank. Outputs, analog channels and events have no place in a TRC file.
 
     Parameters
     ----------
@@ -149,6 +149,7 @@ def write_trc(recording: Recording, path: str | Path, unit: str = "mm") -> None:
         (frames[:, None], times[:, None], in_file.reshape(n, -1)),
         ("%d", "%.9f", f"%.{decimals}f"),
         "\t",
+        gap="NaN",
     )
     with replacing(path) as temporary:
         text = "".join("\t".join(row) + "\n" for row in head) + body
