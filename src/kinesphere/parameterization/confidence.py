@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.parameterization.axes.fit import Labels, phase_swing, thinned
+from kinesphere.parameterization.axes.fit import Labels, phase_swing
 from kinesphere.parameterization.samples import JointSamples, Phase
 from kinesphere.parameterization.settings import AxesSettings
 
@@ -135,24 +135,6 @@ def reasons_to_doubt(
             if angle < s.smallest_angle:
                 doubts.append(f"two axes are {angle:.0f}° apart, too close to be two")
     return doubts
-
-
-def main_movements(samples: JointSamples, s: AxesSettings) -> tuple[Phase, ...]:
-    """Return the phases in which the limb moves about one axis, and far enough.
-
-    A main movement is done about one axis at a time (paper section 4); a phase of free motion is
-    not, but holds more movement than all of calibration and would outweigh it.
-    """
-    pure: list[Phase] = []
-    for phase in samples.phases:
-        w = phase_swing(samples, phase).vectors
-        values, vectors = np.linalg.eigh(w.T @ w)
-        angles = w @ vectors[:, 2] / np.sqrt(thinned(phase).step)
-        extent = float(np.diff(np.percentile(angles, PERCENTILES))[0])
-        far_enough = extent >= np.deg2rad(s.smallest_range)
-        if far_enough and values[2] >= s.purest * values.sum():
-            pure.append(phase)
-    return tuple(pure)
 
 
 def observed_n_axes(samples: JointSamples) -> int | None:

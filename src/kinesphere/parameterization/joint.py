@@ -20,10 +20,10 @@ from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.confidence import (
     AxesQuality,
     assess_axes,
-    main_movements,
     observed_n_axes,
     reasons_to_doubt,
 )
+from kinesphere.parameterization.main_movements import main_movements
 from kinesphere.parameterization.movement_filter import Movement, find_movement
 from kinesphere.parameterization.rest import paper_rest, rest_target, robust_rest
 from kinesphere.parameterization.samples import JointSamples, runs, smooth_rotations
@@ -34,7 +34,8 @@ from kinesphere.parameterization.settings import (
 )
 
 TRIAL_FRAMES = 2000  # enough to tell which order of axes serves better
-CLEARLY = 0.95  # another order must lower the twist at least to this share to be taken
+CLEARLY = 0.5  # another order must lower the twist at least to this share to be taken: where
+# limbs really twist, the wrong order of axes lowers it to 0.65 now and then
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,13 +171,11 @@ def _movement_axes(
     def find(half: JointSamples) -> Array:
         return find_axes(half, n_axes, options)
 
-    samples = view.samples
-    pure = samples.with_phases(main_movements(samples, options))
-    axes = find(pure)
-    if len(axes) == n_axes:
-        samples = pure
-    else:
+    for phases in main_movements(view.samples, options):
+        samples = view.samples.with_phases(phases)
         axes = find(samples)
+        if len(axes) == n_axes:
+            break
     if len(axes) == 0:
         unseen = not view.calibration.any()
         return axes, None, ["it is never seen" if unseen else "the limb hardly moves"]

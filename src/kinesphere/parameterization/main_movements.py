@@ -1,0 +1,83 @@
+"""Which phases are main movements: about one axis at a time, and far enough (paper section 4)."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.geometry.rotations import rotation_log
+from kinesphere.parameterization.axes.fit import phase_swing, thinned
+from kinesphere.parameterization.samples import JointSamples, Phase
+from kinesphere.parameterization.settings import AxesSettings
+
+PERCENTILES = (5.0, 95.0)  # a range of motion leaves the extremes out
+STEP = 0.1  # s, over which the direction of a turn is taken
+SHORTEST = 0.8  # s, of a piece that a phase is cut into
+MOST_TRIALS = 300  # places where a cut is tried
+
+
+def main_movements(samples: JointSamples, s: AxesSettings) -> Iterator[tuple[Phase, ...]]:
+    """Yield sets of phases to find axes in, the most trustworthy set first.
+
+    A main movement is done about one axis at a time; a phase of free motion is not, but may hold
+    more movement than all of calibration and would outweigh it. So first come the phases that are
+    very pure, and the halves of phases that run from one main movement into the next without a
+    rest, cut where the axes change; then the phases that are nearly pure; at last all there are.
+    """
+    far = np.deg2rad(s.smallest_range)
+    purities = {phase: _purity(samples, phase) for phase in samples.phases}
+    purer = 1 - (1 - s.purest) / 4
+    very_pure: list[Phase] = []
+    for phase, purity in purities.items():
+        if purity >= purer:
+            very_pure.append(phase)
+        elif (cut := best_cut(samples, phase)) is not None:
+            both = ((phase[0], cut), (cut, phase[1]))
+            if all(_purity(samples, half) >= purer for half in both):
+                very_pure += both
+    nearly_pure = [phase for phase, purity in purities.items() if purity >= s.purest]
+    for pure in (very_pure, nearly_pure):
+        yield tuple(phase for phase in pure if _extent(samples, phase) >= far)
+    yield samples.phases
+
+
+def best_cut(samples: JointSamples, phase: Phase) -> int | None:
+    """Return the frame where one axis of rotation gives way to another.
+
+    The cut after which one axis for each side explains most of the turning, measured across the
+    limb so that twist has no say; None for a phase too short to be cut.
+    """
+    start, stop = phase
+    shortest = int(np.ceil(SHORTEST * samples.rate))
+    if stop - start < 2 * shortest:
+        return None
+    step = max(1, round(STEP * samples.rate))
+    stride = max(1, (stop - start) // MOST_TRIALS)
+    first = np.arange(start, stop - step, stride)
+    frames = first + step // 2
+    q, p = samples.rotations, samples.positions
+    turns = rotation_log(q[first + step] @ np.swapaxes(q[first], -1, -2))
+    turns -= (turns * p[frames]).sum(axis=1, keepdims=True) * p[frames]
+    before = np.cumsum(turns[:, :, None] * turns[:, None, :], axis=0)
+    explained = _largest(before) + _largest(before[-1] - before)
+    explained[(frames < start + shortest) | (frames > stop - shortest)] = -1.0
+    return int(frames[explained.argmax()])
+
+
+def _largest(matrices: Array) -> Array:
+    return np.asarray(np.linalg.eigvalsh(matrices)[:, 2])
+
+
+def _purity(samples: JointSamples, phase: Phase) -> float:
+    """Return the share of a phase's swing that is about its own main axis."""
+    w = phase_swing(samples, phase).vectors
+    values = np.linalg.eigvalsh(w.T @ w)
+    return float(values[2] / max(values.sum(), 1e-300))
+
+
+def _extent(samples: JointSamples, phase: Phase) -> float:
+    """Return how far the limb moves about the main axis of a phase, in rad."""
+    w = phase_swing(samples, phase).vectors
+    axis = np.linalg.eigh(w.T @ w)[1][:, 2]
+    angles = w @ axis / np.sqrt(thinned(phase).step)
+    return float(np.diff(np.percentile(angles, PERCENTILES))[0])

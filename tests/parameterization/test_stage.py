@@ -1,0 +1,288 @@
+"""The whole stage on the synthetic actor, and on motion that tells nothing."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from kinesphere.data import JointFlag, Motion, PoseFlag, Skeleton, motion_from_parameters
+from kinesphere.errors import BadSetting
+from kinesphere.geometry.rotations import rotation_about
+from kinesphere.parameterization import (
+    AxesSettings,
+    FilterSettings,
+    ParameterizationSettings,
+    RestSettings,
+    TwistSettings,
+    parameterize,
+)
+from kinesphere.synthetic import make_performance
+
+AXIS = 0.5  # deg, noise-free: what 0.2 deg of sway about the other axes leaves
+MET = 2e-3  # m, a one-axis joint whose axis is off by some hundredths of a degree
+
+
+@pytest.fixture(scope="module")
+def performance():
+    """Return a short calibration and some free motion: 25 Hz keeps it quick."""
+    return make_performance(np.random.default_rng(7), rate=25.0, calibration_s=40.0, free_s=8.0)
+
+
+@pytest.fixture(scope="module")
+def solved(performance):
+    return parameterize(performance.motion)
+
+
+def axis_errors(found, true):
+    sines = np.linalg.norm(np.cross(found.axes, true.axes), axis=1)
+    return np.rad2deg(np.arctan2(sines, np.abs((found.axes * true.axes).sum(axis=1))))
+
+
+def findings(parameters, joint):
+    return parameters.history[-1].findings["joints"][joint]
+
+
+def only(motion, names):
+    """Return the motion of some limbs, root first."""
+    at = [motion.skeleton.limb_names.index(name) for name in names]
+    joints = tuple(j for j in motion.skeleton.joints if j.child in names)
+    skeleton = Skeleton(tuple(motion.skeleton.limbs[i] for i in at), joints)
+    return replace(
+        motion,
+        skeleton=skeleton,
+        rotations=motion.rotations[:, at],
+        origins=motion.origins[:, at],
+        residuals=motion.residuals[:, at],
+        flags=motion.flags[:, at],
+    )
+
+
+def cut(motion, frames):
+    return replace(
+        motion,
+        rotations=motion.rotations[frames],
+        origins=motion.origins[frames],
+        residuals=motion.residuals[frames],
+        flags=motion.flags[frames],
+    )
+
+
+def test_the_actors_axes_come_back(performance, solved):
+    for joint in solved.skeleton.joints:
+        true = performance.skeleton.joint(joint.name)
+        assert joint.axes_source == "movement", joint.name
+        assert joint.n_axes == true.n_axes
+        assert axis_errors(joint, true).max() < AXIS, joint.name
+        assert ((joint.axes * true.axes).sum(axis=1) > 0).all(), joint.name  # order and sign
+        assert np.rad2deg(joint.axes_uncertainty.max()) < 1.5
+
+
+def test_the_poses_come_back(performance, solved):
+    rebuilt = motion_from_parameters(solved)
+    assert np.abs(rebuilt.origins - performance.motion.origins).max() < MET
+    assert np.nanmax(solved.residuals) < MET
+    assert (solved.flags == 0).mean() > 0.95
+
+
+def test_the_actors_angles_come_back_with_its_own_axes(performance):
+    solved = parameterize(performance.motion, reuse=performance.skeleton)
+    true = performance.parameters
+    off = np.angle(np.exp(1j * (solved.angles - true.angles)))
+    assert_array_equal(np.isnan(off), np.isnan(true.angles))
+    sound = (solved.flags & JointFlag.SINGULAR) == 0
+    assert np.nanmax(np.abs(off[sound])) < 1e-9
+    assert np.abs(np.angle(np.exp(1j * (solved.twists - true.twists))))[sound].max() < 1e-9
+    assert all(joint.axes_source == "reused" for joint in solved.skeleton.joints)
+
+
+def test_a_window_holds_what_axes_come_from(performance):
+    start, end = performance.calibration
+    solved = parameterize(performance.motion, calibration=(start, end))
+    assert solved.history[-1].settings["calibration_s"] == [start, end]
+    for joint in solved.skeleton.joints:
+        assert axis_errors(joint, performance.skeleton.joint(joint.name)).max() < AXIS
+        assert all(b <= end + 0.1 for _, b in findings(solved, joint.name)["phases_s"])
+    with pytest.raises(BadSetting, match=r"runs from 0 to 47\.96 s"):
+        parameterize(performance.motion, calibration=(100.0, 120.0))
+
+
+def test_free_motion_is_told_and_gets_body_axes(performance):
+    start = performance.calibration[1]
+    solved = parameterize(performance.motion, calibration=(start, start + 100))
+    sources = {j.name: j.axes_source for j in solved.skeleton.joints}
+    assert sources["left_hip"] == sources["right_shoulder"] == "body"
+    assert_allclose(np.abs(solved.skeleton.joint("left_hip").axes), [[1, 0, 0], [0, 0, 1]])
+    told = solved.history[-1].warnings[0]
+    for name, source in sources.items():
+        assert (name in told) == (source == "body")
+    for name in ("left_knee", "right_elbow"):  # one axis shows in any motion, twist or not
+        true = performance.skeleton.joint(name)
+        assert axis_errors(solved.skeleton.joint(name), true).max() < AXIS
+
+
+def test_the_history_can_be_written(solved):
+    step = solved.history[-1]
+    assert step.name == "parameterization"
+    assert json.loads(json.dumps(step.findings))["joints"]["left_hip"]["n_axes"] == 2
+    assert step.settings["axes.method"] == "phase-log-pca"
+    assert solved.skeleton.history[-1] is step
+
+
+def test_the_papers_own_way_by_name(performance):
+    settings = ParameterizationSettings(
+        filter=FilterSettings(method="paper"),
+        axes=AxesSettings(method="direction-joining", on_doubt="movement"),
+        rest=RestSettings(method="paper"),
+        twist=TwistSettings(method="sampled", step=5.0),
+    )
+    motion = only(performance.motion, ["trunk", "left_thigh", "left_shank"])
+    solved = parameterize(motion, settings, calibration=performance.calibration)
+    knee = solved.skeleton.joint("left_knee")
+    assert axis_errors(knee, performance.skeleton.joint("left_knee")).max() < 15  # great circles
+    rest = knee.rest
+    relative = motion.relative_rotations()[:, 1]
+    assert np.abs(relative - rest).max(axis=(1, 2)).min() == 0  # one sample of the recording
+    assert np.isfinite(solved.twists).all()
+    steps = np.rad2deg(solved.twists) / 5
+    assert_allclose(steps, np.round(steps), atol=1e-9)
+
+
+def test_counts_are_followed(performance):
+    settings = ParameterizationSettings(axes=AxesSettings(counts="left_hip=1, knee=3"))
+    motion = only(performance.motion, ["trunk", "left_thigh", "left_shank"])
+    solved = parameterize(motion, settings)
+    assert solved.skeleton.joint("left_hip").n_axes == 1
+    assert solved.skeleton.joint("left_knee").n_axes == 3
+    assert np.isfinite(solved.angles[:, 1]).all()
+    rebuilt = motion_from_parameters(solved)
+    assert_allclose(rebuilt.rotations[:, 2], motion.rotations[:, 2], atol=1.5)  # hip is poorer now
+    assert findings(solved, "left_hip")["n_axes_by_data"] == 2
+
+
+def test_an_unnamed_joint_finds_its_number_of_axes(performance):
+    motion = only(performance.motion, ["trunk", "left_thigh", "left_shank"])
+    names = {"left_hip": "joint_01", "left_knee": "joint_02"}
+    joints = tuple(replace(j, name=names[j.name]) for j in motion.skeleton.joints)
+    motion = replace(motion, skeleton=replace(motion.skeleton, joints=joints))
+    solved = parameterize(motion)
+    assert [joint.n_axes for joint in solved.skeleton.joints] == [2, 1]
+    for joint in solved.skeleton.joints:
+        back = {new: old for old, new in names.items()}[joint.name]
+        true = performance.skeleton.joint(back)
+        cosines = np.abs(joint.axes @ true.axes.T).max(axis=1)
+        assert np.rad2deg(np.arccos(np.minimum(cosines, 1))).max() < AXIS
+    for column in np.rad2deg(solved.angles[:, 0, :2]).T:
+        assert column[np.abs(column) > np.abs(column).max() / 2][0] > 0  # first excursion
+
+
+@pytest.mark.parametrize("n_frames", [0, 1, 2])
+def test_hardly_any_frames_are_flagged_not_refused(performance, n_frames):
+    solved = parameterize(cut(performance.motion, slice(0, n_frames)))
+    assert solved.n_frames == n_frames
+    assert {joint.axes_source for joint in solved.skeleton.joints} == {"body"}
+    assert len(solved.history[-1].warnings) > 0
+    assert np.isfinite(solved.angles[:, :, 0]).all()
+
+
+def test_a_still_body_is_told(performance):
+    motion = performance.motion
+    still = np.zeros(60, dtype=int)
+    solved = parameterize(cut(motion, still))
+    assert not solved.moving.any()
+    told = solved.history[-1].warnings[0]
+    assert "hardly moves" in told
+    assert "left_hip" in told
+    rebuilt = motion_from_parameters(solved)
+    assert_allclose(rebuilt.rotations[:, 0], motion.rotations[still, 0])
+
+
+def test_a_limb_never_seen_stays_absent(performance):
+    motion = performance.motion
+    at = motion.skeleton.limb_names.index("left_shank")
+    flags = motion.flags.copy()
+    rotations, origins = motion.rotations.copy(), motion.origins.copy()
+    flags[:, at], rotations[:, at], origins[:, at] = PoseFlag.UNSEEN, np.nan, np.nan
+    solved = parameterize(replace(motion, rotations=rotations, origins=origins, flags=flags))
+    knee = solved.skeleton.joint_names.index("left_knee")
+    ankle = solved.skeleton.joint_names.index("left_ankle")
+    assert np.isnan(solved.angles[:, [knee, ankle]]).all()
+    assert (solved.flags[:, [knee, ankle]] == JointFlag.UNSEEN).all()
+    assert "never seen" in solved.history[-1].warnings[0]
+    assert findings(solved, "left_knee")["residual_mean_mm"] is None
+    assert solved.skeleton.joint("right_knee").axes_source == "movement"
+
+
+def test_a_twist_nobody_knows_is_absent_and_carried_outward(performance):
+    motion = only(performance.motion, ["trunk", "left_upper_arm", "left_forearm"])
+    rng = np.random.default_rng(3)
+    flags, rotations = motion.flags.copy(), motion.rotations.copy()
+    flags[:, 1] = PoseFlag.TWIST_UNKNOWN
+    limb = motion.skeleton.limbs[1]
+    spin = np.cumsum(rng.normal(0, 0.02, motion.n_frames))
+    rotations[:, 1] = rotations[:, 1] @ rotation_about(limb.long_axis, spin)
+    spun = replace(motion, rotations=rotations, flags=flags)
+    solved = parameterize(spun)
+    assert np.isnan(solved.twists[:, 0]).all()
+    assert (solved.flags[:, 0] & JointFlag.TWIST_UNKNOWN).all()
+    assert findings(solved, "left_shoulder")["axes_method"] == "small-circle"
+    shoulder = solved.skeleton.joint("left_shoulder")
+    assert axis_errors(shoulder, performance.skeleton.joint("left_shoulder")).max() < 2 * AXIS
+    rebuilt = motion_from_parameters(solved)
+    along = limb.long_axis
+    assert_allclose(rebuilt.rotations[:, 1] @ along, rotations[:, 1] @ along, atol=1e-6)
+    # the forearm is told in the frame that the table rebuilds, so it points where it did
+    unknown = np.isfinite(solved.angles[:, 1, 0])
+    far = np.linalg.norm((rebuilt.rotations - spun.rotations)[:, 2] @ along, axis=1)
+    assert np.median(far[unknown]) < 0.4
+
+
+def test_a_joint_torn_apart_for_a_moment_is_flagged(performance):
+    motion = only(performance.motion, ["trunk", "left_thigh", "left_shank"])
+    origins = motion.origins.copy()
+    origins[100:104, 2] += [0, 0, 0.1]
+    flags = parameterize(replace(motion, origins=origins)).flags
+    torn = (flags[:, 1] & JointFlag.DISLOCATED) > 0
+    assert_array_equal(np.flatnonzero(torn), [100, 101, 102, 103])
+
+
+def test_what_was_filled_stays_marked(performance):
+    motion = only(performance.motion, ["trunk", "left_thigh", "left_shank"])
+    flags = motion.flags.copy()
+    flags[5:9, 1] = PoseFlag.FILLED
+    found = parameterize(replace(motion, flags=flags)).flags & JointFlag.FILLED
+    assert_array_equal(np.flatnonzero(found[:, 0]), [5, 6, 7, 8])
+    assert_array_equal(np.flatnonzero(found[:, 1]), [5, 6, 7, 8])
+
+
+def test_gaps_change_nothing_elsewhere(performance):
+    motion = only(performance.motion, ["trunk", "left_thigh", "left_shank"])
+    rotations, flags = motion.rotations.copy(), motion.flags.copy()
+    rotations[300:310, 2], flags[300:310, 2] = np.nan, PoseFlag.UNSEEN
+    whole = parameterize(motion, reuse=performance.skeleton)
+    gappy = parameterize(
+        replace(motion, rotations=rotations, flags=flags), reuse=performance.skeleton
+    )
+    seen = np.ones(motion.n_frames, dtype=bool)
+    seen[300:310] = False
+    assert_array_equal(gappy.angles[seen], whole.angles[seen])
+    assert np.isnan(gappy.angles[~seen, 1]).all()
+    assert_array_equal(gappy.angles[~seen, 0], whole.angles[~seen, 0])
+
+
+def test_axes_of_a_stranger_with_other_joints_are_no_help(performance):
+    motion = only(performance.motion, ["trunk", "left_thigh"])
+    stranger = only(performance.motion, ["trunk", "right_thigh"]).skeleton
+    solved = parameterize(motion, reuse=stranger)
+    assert "no joint of the same name" in solved.history[-1].warnings[-1]
+    assert solved.skeleton.joints[0].axes_source == "movement"
+
+
+def test_twelve_frames_a_second_are_enough(performance):
+    slow = make_performance(np.random.default_rng(5), rate=12.0, calibration_s=40.0, free_s=0.0)
+    motion: Motion = only(slow.motion, ["trunk", "left_thigh", "left_shank", "left_foot"])
+    solved = parameterize(motion)
+    for joint in solved.skeleton.joints:
+        assert joint.axes_source == "movement"
+        assert axis_errors(joint, slow.skeleton.joint(joint.name)).max() < 2 * AXIS
