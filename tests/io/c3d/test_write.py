@@ -309,6 +309,12 @@ def test_long_trials(rng, tmp_path, first):
         assert (reader.first_frame, reader.frame_count) == (first, n_frames)
 
 
+def test_a_part_from_late_in_a_long_trial(rng, tmp_path):
+    late = Recording(rng.normal(size=(5, 1, 3)), ("A",), 1000.0, first_frame=70_000)
+    after = rewritten(late, tmp_path)
+    assert (after.n_frames, after.first_frame) == (5, 70_000)
+
+
 def test_parameters_of_one_name_become_several_and_the_last_keeps_it(c3d_file, tmp_path):
     before = read_c3d(c3d_file(groups={"P": {"Mass": [1.0], "mass": [2.0], "Mass_1": [3.0]}}))
     group = source(rewritten(before, tmp_path)).layout.section.group("P")
@@ -366,6 +372,10 @@ def test_what_the_format_has_no_room_for(recording, tmp_path, different, message
     assert path.read_bytes() == b"before"
 
 
-def test_a_recording_without_frames_is_refused(tmp_path):
-    with pytest.raises(BadRecording, match="without frames"):
-        write_c3d(Recording(np.empty((0, 1, 3)), ("A",), 100.0), tmp_path / "none.c3d")
+@pytest.mark.parametrize(
+    ("shape", "labels", "message"),
+    [((0, 1, 3), ("A",), "without frames"), ((4, 0, 3), (), "without points or channels")],
+)
+def test_an_empty_recording_is_refused(tmp_path, shape, labels, message):
+    with pytest.raises(BadRecording, match=message):
+        write_c3d(Recording(np.empty(shape), labels, 100.0), tmp_path / "none.c3d")

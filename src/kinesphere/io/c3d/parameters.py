@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from kinesphere.errors import BadRecording
+
 CHAR, BYTE, WORD, FLOAT = -1, 1, 2, 4
 """Kinds of parameter; but for the sign, how many bytes one element takes."""
 LARGEST = 30_000
@@ -113,7 +115,9 @@ class Section:
         old = self.group(group)
         if old is None:
             taken = {g.number for g in self.groups}
-            free = next(n for n in range(1, 129) if n not in taken)
+            free = next((n for n in range(1, 128) if n not in taken), None)
+            if free is None:
+                raise BadRecording(f"its file has no room for another parameter group, {group}")
             return Section((*self.groups, Group(free, group, parameters=parameters)))
         content = list(old.parameters)
         for new in parameters:
@@ -230,8 +234,10 @@ def texts(name: str, values: Sequence[str], width: int = 0) -> tuple[Parameter, 
 
 def text_pairs(name: str, values: Sequence[str]) -> Parameter:
     """Return an even number of strings as pairs, the way POINT:TYPE_GROUPS holds them."""
-    (flat,) = texts(name, values)
-    return replace(flat, dims=(flat.dims[0], 2, len(values) // 2))
+    count = min(len(values) // 2, MOST)
+    rows = [value.encode()[:MOST] for value in values[: 2 * count]]
+    width = max([1, *(len(row) for row in rows)])
+    return Parameter(name, CHAR, (width, 2, count), b"".join(row.ljust(width) for row in rows))
 
 
 def _part(name: str, i: int) -> str:

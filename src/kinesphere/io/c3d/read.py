@@ -85,7 +85,6 @@ def _recording(path: Path, content: bytes, layout: Layout, frames: Frames) -> Re
         rotations=rotations_from_bytes(content, layout, warnings),
     )
     findings: dict[str, Json] = {
-        "format": "C3D",
         "encoding": f"{layout.processor.name} {'real' if layout.is_float else 'integer'}",
         "unit": unit,
         "rate_hz": layout.rate,
@@ -108,7 +107,13 @@ def _recording(path: Path, content: bytes, layout: Layout, frames: Frames) -> Re
         up=_up(layout.section),
         details={KEY: source},
         history=(
-            Step("read", {"file": path.name}, findings, tuple(warnings), version=__version__),
+            Step(
+                name="read",
+                settings={"format": "c3d", "file": path.name},
+                findings=findings,
+                warnings=tuple(warnings),
+                version=__version__,
+            ),
         ),
     )
 

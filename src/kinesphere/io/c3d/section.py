@@ -13,11 +13,14 @@ from kinesphere.io.c3d.parameters import (
     Group,
     Parameter,
     Section,
-    text_from_bytes,
 )
 from kinesphere.io.c3d.processor import INTEL, Processor
 
 PARAMETER_KEY = b"\x01\x50"
+_NAMES = "latin-1"
+"""Names are ASCII; whatever bytes a description holds go back as they came."""
+_LARGEST_RECORD = 65535
+"""Bytes: the way to the next record has 16 bits."""
 
 
 def section_from_bytes(content: bytes, processor: Processor) -> Section:
@@ -41,11 +44,11 @@ def section_from_bytes(content: bytes, processor: Processor) -> Section:
             break
         locked, start = name_length < 0, at + 2
         record = _Record(content, start, f"record at byte {at} of the parameter section")
-        name = text_from_bytes(record.take(abs(name_length))).strip(" \0")
+        name = record.take(abs(name_length)).decode(_NAMES).strip(" \0")
         jump_from = record.at
         distance = int(processor.words(record.take(2))[0]) % 65536
         if number < 0:
-            description = text_from_bytes(record.take_counted())
+            description = record.take_counted().decode(_NAMES)
             parameters = tuple(orphans.pop(-number, []))
             if -number in groups:  # said twice: what was gathered so far belongs together
                 parameters = groups[-number].parameters
@@ -111,7 +114,9 @@ def _parameter(name: str, record: _Record, processor: Processor) -> Parameter:
         data = processor.words(data).astype("<i2").tobytes()
     elif kind == FLOAT:
         data = processor.floats(data).astype("<f4").tobytes()
-    description = text_from_bytes(record.take_counted())
+    description = record.take_counted().decode(_NAMES)
+    if len(data) + len(dims) + len(description) + 5 > _LARGEST_RECORD:
+        raise UnreadableFile(f"parameter {name!r} announces {len(data)} bytes, more than a record")
     return Parameter(name, kind, dims, data, description)
 
 
@@ -127,7 +132,7 @@ def _bytes_of_parameter(p: Parameter, number: int) -> bytes:
 def _bytes_of_record(
     name: str, locked: bool, number: int, content: bytes, description: str
 ) -> bytes:
-    title, words = name.encode()[:127], description.encode()[:255]
+    title, words = name.encode(_NAMES), description.encode(_NAMES)
     tail = content + bytes((len(words),)) + words
     length = -len(title) if locked else len(title)
     return (

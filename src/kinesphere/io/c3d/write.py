@@ -166,6 +166,8 @@ def _check(recording: Recording) -> None:
     if recording.n_frames == 0:
         raise BadRecording("a recording without frames cannot be a C3D file")
     n_points = recording.n_markers + len(recording.outputs)
+    if n_points == 0 and recording.analog is None:
+        raise BadRecording("a recording without points or channels cannot be a C3D file")
     if n_points > LARGEST_WORD:
         raise BadRecording(f"{n_points} points; a C3D file holds at most {LARGEST_WORD}")
     if recording.first_frame < 0:
