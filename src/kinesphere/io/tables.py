@@ -79,9 +79,8 @@ def format_rows(
     form = separator.join(
         one for block, one in zip(blocks, formats, strict=True) for _ in range(block.shape[1])
     )
-    rows = np.hstack(blocks).tolist()
-    text = "\n".join([form % tuple(row) for row in rows])
-    return text.replace("nan", gap) + "\n" if rows else ""
+    rows = [form % tuple(row.tolist()) for row in np.hstack(blocks)]
+    return "".join(f"{row}\n" for row in rows).replace("nan", gap)
 
 
 def rate_from_times(times: Array, slack: float) -> float | None:
