@@ -221,11 +221,19 @@ def test_one_person_and_a_prop_need_no_pick(rng):
     assert matched.labels == (*CMU.labels, "Wand:tip", "Wand:top")
 
 
-def test_a_prop_with_a_prefix_does_not_own_bare_names(rng):
-    file = recording_of(rng, (*CMU.labels, "Wand:tip"))
+@pytest.mark.parametrize("n", [18, 41])
+def test_a_prop_with_a_prefix_does_not_own_bare_names(rng, n):
+    file = recording_of(rng, (*CMU.labels[:n], "Wand:tip"))
     matched = match_labels(file, CMU)
     assert findings(matched)["subject"] == ""
-    assert matched.labels == (*CMU.labels, "Wand:tip")
+    assert matched.labels == (*CMU.labels[:n], "Wand:tip")
+
+
+def test_bare_names_beside_one_prefix_are_that_persons_too(rng):
+    file = recording_of(rng, (*prefixed("Ann", CMU.labels[:30]), *CMU.labels[30:]))
+    matched = match_labels(file, CMU)
+    assert findings(matched)["subject"] == "Ann"
+    assert matched.labels == CMU.labels
 
 
 def test_an_extra_keeps_its_prefix_where_its_bare_name_is_taken(rng):
