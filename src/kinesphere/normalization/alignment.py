@@ -22,6 +22,10 @@ class Alignment:
     """(n_limbs, 3, 3) ``old_from_new``."""
     along: Array
     """(n_limbs, 3) long axes in the new frames."""
+    shifts: Array
+    """(n_limbs, 3) m, the middles of the limbs in the old frames: the new origins."""
+    lengths: Array
+    """(n_limbs,) m from end to end; NaN where unknown."""
     off_ideal: dict[str, float] = field(default_factory=dict)
     """Limb → rad between where it points in the mean default pose and in the ideal one."""
     elsewhere: list[str] = field(default_factory=list)
@@ -51,7 +55,12 @@ def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Ali
     """
     anatomy = samples.anatomy
     n_limbs = len(anatomy.skeleton.limbs)
-    found = Alignment(np.tile(np.eye(3), (n_limbs, 1, 1)), np.full((n_limbs, 3), np.nan))
+    found = Alignment(
+        turns=np.tile(np.eye(3), (n_limbs, 1, 1)),
+        along=np.array([limb.long_axis for limb in anatomy.skeleton.limbs]),
+        shifts=np.zeros((n_limbs, 3)),
+        lengths=np.linalg.norm(anatomy.distal_ends - anatomy.proximal_ends, axis=1),
+    )
     seen = np.asarray(np.isfinite(samples.rotations).all(axis=(2, 3)))
     sure = twist_told(samples.motion.flags)
     for limb, name in enumerate(anatomy.skeleton.limb_names):
@@ -69,10 +78,10 @@ def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Ali
             found.twistless.append(name)
         if base_from_limb is None:
             found.never.append(name)
-            found.along[limb] = anatomy.skeleton.limbs[limb].long_axis
             continue
         base_from_new, found.along[limb], off = _frame(anatomy, limb, base_from_limb, rule)
         found.turns[limb] = base_from_limb.T @ base_from_new
+        found.shifts[limb] = np.nan_to_num(anatomy.mid_point(limb))
         found.off_ideal[name] = off
     return found
 

@@ -1,0 +1,61 @@
+"""What normalization tells of itself: findings for the history, warnings for a person."""
+
+import numpy as np
+
+from kinesphere.data import Json
+from kinesphere.normalization.alignment import Alignment
+from kinesphere.normalization.default_frames import DefaultFrames
+from kinesphere.normalization.facing import Verdict
+from kinesphere.normalization.samples import Samples
+
+_WIDE = np.deg2rad(10.0)  # spread of the body frames from which their mean is in doubt
+
+
+def warnings_of(samples: Samples, default: DefaultFrames, alignment: Alignment) -> tuple[str, ...]:
+    """Return what was doubtful, each a sentence for a person."""
+    said = list(default.warnings)
+    if default.doubts:
+        frame = samples.motion.first_frame + int(samples.frames[default.best])
+        said.append(
+            f"no frame shows a good default position; the best, frame {frame}, was used although "
+            + "; ".join(default.doubts)
+        )
+    widest = float(default.spread.max())
+    if widest > _WIDE:
+        said.append(
+            f"body frames of the default position differ by up to {np.rad2deg(widest):.0f} deg; "
+            "the pelvis and the shoulders may turn against each other, or joints be off"
+        )
+    if alignment.elsewhere:
+        said.append(
+            f"the default position does not fully show {', '.join(alignment.elsewhere)}; aligned "
+            "with the limb before it, in the frames that show both"
+        )
+    if alignment.never:
+        said.append(f"{', '.join(alignment.never)} could not be aligned and keeps its frame")
+    return tuple(said)
+
+
+def findings_of(
+    samples: Samples, default: DefaultFrames, verdict: Verdict, alignment: Alignment
+) -> dict[str, Json]:
+    """Return what was found and how good it is."""
+    first, times = samples.motion.first_frame, samples.motion.times
+    used = samples.frames[default.chosen]
+    spread = np.rad2deg(default.spread)
+    return {
+        "body_frame": default.method,
+        "default_frame": int(first + samples.frames[default.best]),
+        "default_time_s": float(times[samples.frames[default.best]]),
+        "good_default_position": not default.doubts,
+        "cost": float(default.cost[default.best]),
+        "terms": {n: v if np.isfinite(v) else None for n, v in default.terms.items()},
+        "n_frames_averaged": len(used),
+        "frames_averaged": [int(first + f) for f in used],
+        "times_averaged_s": [float(times[used[0]]), float(times[used[-1]])],
+        "spread_rms_deg": float(np.sqrt(np.mean(spread**2))),
+        "spread_max_deg": float(spread.max()),
+        "facing": verdict.as_json(),
+        "limbs_without_twist": list(alignment.twistless),
+        "limbs_off_ideal_deg": {n: float(np.rad2deg(a)) for n, a in alignment.off_ideal.items()},
+    }

@@ -1,0 +1,118 @@
+"""The frames that show the default position, and the body's axes as they agree on them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinesphere.data import Array, Mask
+from kinesphere.errors import DegenerateMotion
+from kinesphere.geometry.rotations import rotation_angle
+from kinesphere.normalization.averaging import robust_mean_rotations
+from kinesphere.normalization.default_position import (
+    JOINTS_OF_A_PLANE,
+    PositionCost,
+    joint_speeds,
+    paper_cost,
+    posture_angles,
+    posture_cost,
+)
+from kinesphere.normalization.doubts import doubts
+from kinesphere.normalization.proposal import Proposal
+from kinesphere.normalization.samples import Samples
+from kinesphere.normalization.settings import NormalizationSettings
+
+_SHARE, _MOST_SHARED = 0.1, 1.0  # of the best cost: where nothing is good, differences count less
+_STRIDE = 0.5  # of the best cost: enough to reach over a whole stride
+
+
+@dataclass(frozen=True, eq=False)
+class DefaultFrames:
+    """Which samples show the default position best, and how well."""
+
+    method: str
+    """How the body frame was found."""
+    best: int
+    """The sample of least cost."""
+    chosen: Mask
+    """(n,) samples that are averaged."""
+    cost: Array
+    """(n,) infinite where the body's axes cannot be told."""
+    terms: dict[str, float]
+    """Name with unit → what the best sample measures."""
+    root_from_body: Array
+    """(3, 3) mean over the chosen samples, in the root limb's old frame."""
+    spread: Array
+    """(n_chosen,) rad between the body frame of each and their mean."""
+    doubts: tuple[str, ...]
+    """Why the best is no good default position."""
+    warnings: tuple[str, ...]
+
+
+def find_default_frames(
+    samples: Samples, proposal: Proposal, settings: NormalizationSettings
+) -> DefaultFrames:
+    """Find the samples that show the default position, many or the best alone.
+
+    Raises
+    ------
+    DegenerateMotion
+        If no sample shows the body's axes.
+    """
+    position, warnings = _position(samples, settings)
+    bodies = proposal.root_from_body
+    cost = np.where(np.isfinite(bodies).all(axis=(1, 2)), position.cost, np.inf)
+    if not np.isfinite(cost).any():
+        raise DegenerateMotion(
+            f"no frame shows enough to place the body's axes: {proposal.needs} in one frame"
+        )
+    best = int(np.argmin(cost))
+    chosen = np.arange(len(cost)) == best
+    if settings.frames == "many" and not proposal.only_best:
+        chosen = cost <= cost[best] + _margin(samples, position, best, cost[best], settings)
+    mean = robust_mean_rotations(bodies[chosen][:, None])[0]
+    measured = position.terms | posture_angles(samples, settings.template)
+    terms = {name: float(values[best]) for name, values in measured.items()}
+    return DefaultFrames(
+        method=proposal.method,
+        best=best,
+        chosen=chosen,
+        cost=cost,
+        terms=terms,
+        root_from_body=mean,
+        spread=rotation_angle(mean.T @ bodies[chosen]),
+        doubts=doubts(terms, settings, samples.anatomy.span),
+        warnings=warnings + proposal.warnings,
+    )
+
+
+def _margin(
+    samples: Samples,
+    position: PositionCost,
+    best: int,
+    cost: float,
+    settings: NormalizationSettings,
+) -> float:
+    """Return the cost above the best up to which frames are averaged in.
+
+    Where nothing is good, differences count less. Somebody who never stands still is averaged over
+    whole strides: in each half of one, pelvis and shoulders turn the opposite way.
+    """
+    moves = joint_speeds(samples)[best] > settings.speed * samples.anatomy.span
+    if moves and position.absolute:
+        return _STRIDE * cost
+    return position.margin + min(_SHARE * abs(cost), _MOST_SHARED)
+
+
+def _position(
+    samples: Samples, settings: NormalizationSettings
+) -> tuple[PositionCost, tuple[str, ...]]:
+    if samples.joints.shape[1] < JOINTS_OF_A_PLANE:
+        return posture_cost(samples, settings), ()  # whatever is left of it: speed if nothing else
+    if settings.position == "paper":
+        return paper_cost(samples, settings), ()
+    if posture_angles(samples, settings.template):
+        return posture_cost(samples, settings), ()
+    return paper_cost(samples, settings), (
+        "no limb has a name that a posture could be read from; the default position was sought by "
+        "the paper's cost, which takes stretched poses of any kind",
+    )
