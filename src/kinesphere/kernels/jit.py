@@ -9,5 +9,12 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 
 
 def kernel(function: _F) -> _F:
-    """Compile a function of arrays and numbers; ``NUMBA_DISABLE_JIT=1`` leaves it plain Python."""
-    return cast(_F, numba.njit(cache=True, error_model="numpy")(function))
+    """Compile a function of arrays and numbers; ``NUMBA_DISABLE_JIT=1`` leaves it plain Python.
+
+    Where neither the package's folder nor the user's cache can be written to, each run compiles
+    anew.
+    """
+    try:
+        return cast(_F, numba.njit(cache=True, error_model="numpy")(function))
+    except RuntimeError:  # numba: "no locator available"
+        return cast(_F, numba.njit(error_model="numpy")(function))
