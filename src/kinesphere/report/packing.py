@@ -60,7 +60,7 @@ def pack(values: Array, step: float) -> Packed:
         shape=list(values.shape),
         step=step,
         offset=offset,
-        data=base64.b64encode(zlib.compress(split, 9)).decode("ascii"),
+        data=base64.b64encode(zlib.compress(split, 6)).decode("ascii"),
     )
 
 

@@ -23,7 +23,7 @@ def report_html(solution: Solution, title: str = "") -> str:
     """Return the report of a solution as one self-contained HTML page.
 
     The page holds a player of the motion, the curve of every angle and residual, and a table a
-    stage. Trials above 60 Hz or beyond 12,000 frames are thinned for display, which the page
+    stage. Trials above 60 Hz or beyond 24,000 frames are thinned for display, which the page
     says; figures in tables are of every frame.
 
     Parameters

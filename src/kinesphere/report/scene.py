@@ -10,8 +10,8 @@ from kinesphere.report.packing import pack
 
 SCREEN_RATE = 60.0
 """Hz; a screen shows no more."""
-MAX_FRAMES = 12_000
-"""Frames in one page: 200 s at the rate of a screen, about 8 MB with 50 markers."""
+MAX_FRAMES = 24_000
+"""Frames in one page: 400 s at the rate of a screen, about 9 MB with 41 noisy markers."""
 
 _POSITION_STEP = 1e-4  # m: a tenth of a millimetre is far below a pixel
 _QUATERNION_STEP = 1e-4  # 0.01°
