@@ -5,16 +5,16 @@ marker belongs to the limb whose bone it lies on, so the knee marker moves with 
 epicondyle), the ankle marker with the shank, the shoulder marker with the trunk (acromion). The
 actor has no hands: wrist and finger markers move with the forearm.
 
-Where a limb points, at the end of a chain, only its markers can tell: the toe marker lies on the
-foot's long axis, the finger marker and the middle of the wrist markers on the forearm's, the middle
-of the head markers on the head's.
+Where a limb points, at the end of a chain, only its markers can tell: the finger marker and the
+middle of the wrist markers lie on the forearm's long axis, the middle of the head markers on the
+head's; the foot's is parallel to the line closest to the ankle and the foot markers.
 """
 
 from itertools import chain
 
 import numpy as np
 
-from kinesphere.data import Array
+from kinesphere.data import Array, Limb
 from kinesphere.errors import BadSetting
 from kinesphere.synthetic.actor import Actor
 from kinesphere.synthetic.plan import Vector, other_side
@@ -47,12 +47,12 @@ _LEFT: dict[str, tuple[str, float, Vector]] = {
     "SHN": ("left_shank", 0.50, (0.015, 0.0, -0.030)),
     "ANK": ("left_shank", 1.0, (0.0, 0.0, -0.022)),
     "HEE": ("left_foot", 0.0, (-0.025, -0.015, 0.0)),
-    "TOE": ("left_foot", 0.90, (0.0, 0.0, 0.0)),
-    "MT5": ("left_foot", 0.65, (0.0, -0.010, -0.028)),
+    "TOE": ("left_foot", 0.90, (0.0, -0.008, 0.016)),
+    "MT5": ("left_foot", 0.65, (0.0, -0.012, -0.028)),
 }
 
 _CENTRED = (
-    *(((side + "TOE",), (side + "FIN",), (side + "WRA", side + "WRB")) for side in "LR"),
+    *(((side + "FIN",), (side + "WRA", side + "WRB")) for side in "LR"),
     (("LFHD", "RFHD", "LBHD", "RBHD"),),
 )
 """Markers whose middle lies on the long axis, wherever they are really stuck."""
@@ -91,8 +91,26 @@ def cmu41_markers(rng: np.random.Generator, actor: Actor) -> dict[str, tuple[lis
             rows = [m for m, label in enumerate(labels) if label in group]
             if rows:
                 aside[rows] -= aside[rows].mean(axis=0) @ across
-        bodies[name] = labels, limb.length * along[:, None] * limb.long_axis + actor.size * aside
+        points = limb.length * along[:, None] * limb.long_axis + actor.size * aside
+        if name.endswith("_foot"):
+            points[labels.index(name[0].upper() + "TOE")] = _toe(limb, labels, points)
+        bodies[name] = labels, points
     return bodies
+
+
+def _toe(limb: Limb, labels: list[str], points: Array) -> Array:
+    """Return where the toe marker has to be, (3,) m, for the foot's long axis to lie lengthwise.
+
+    Of the ankle joint and all markers the products of inertia with the long axis are zero.
+    """
+    toe = next(m for m, label in enumerate(labels) if label.endswith("TOE"))
+    all_points = np.vstack([points, -limb.length / 2 * limb.long_axis])
+    reach = all_points @ limb.long_axis
+    lever = reach - reach.mean()
+    others = np.arange(len(lever)) != toe
+    across = np.eye(3) - np.outer(limb.long_axis, limb.long_axis)
+    aside = -(lever[others] @ all_points[others] @ across) / lever[toe]
+    return np.asarray(reach[toe] * limb.long_axis + aside)
 
 
 def cmu41_twin(label: str) -> str:

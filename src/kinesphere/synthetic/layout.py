@@ -17,8 +17,9 @@ Placed: TypeAlias = dict[str, tuple[list[str], Array]]
 """Limb → labels and (n_markers, 3) m in the limb frame."""
 
 _SPREAD_M = (0.05, 0.10)  # rms distance of a body's markers from their centroid
-_SPREAD_SHARE = (0.25, 0.5)  # of the limb's length, where that is less: fingers are thin
+_SPREAD_SHARE = (0.3, 0.55)  # of the limb's length, where that is less: fingers are thin
 _SLACK = 1 + 1e-9
+_LENGTHWISE = 1.3  # of a chain's last limb: extent along its axis against that across
 _LEAST_WIDTH = 0.35  # of the second principal extent against the first: far from a line
 _LEAST_GAP = 0.35  # of the closest pair against the spread: two markers stay two
 
@@ -27,8 +28,8 @@ def marker_bodies(rng: np.random.Generator, actor: Actor) -> Placed:
     """Place a body of three to five markers at random on each limb.
 
     Its centroid lies anywhere about the limb's middle. On a limb that carries no other, nothing but
-    markers tells where it points: there the centroid and the marker farthest from the joint lie on
-    the long axis.
+    markers tells where it points: there the long axis goes from the joint through the centroid, and
+    is the line closest to joint and markers.
 
     Returns
     -------
@@ -70,17 +71,35 @@ def _scattered(rng: np.random.Generator, n_markers: int, limb: Limb) -> Array:
 
 
 def _pointing(rng: np.random.Generator, n_markers: int, limb: Limb, along: Array) -> Array:
-    """Draw points whose centroid, and the farthest of which from the joint, tell the long axis."""
+    """Draw points that tell the long axis: it goes through their centroid, lengthwise."""
+    across = np.eye(3) - np.outer(limb.long_axis, limb.long_axis)
     while True:
-        points = _scattered(rng, n_markers, limb)
-        aside = points - np.outer(points @ limb.long_axis, limb.long_axis)
-        last = int(np.argmax(points @ limb.long_axis))
-        others = np.arange(n_markers) != last
-        points[others] += aside[last] / (n_markers - 1)
-        points[last] -= aside[last]
-        from_joint = points + along + limb.length / 2 * limb.long_axis
-        if np.linalg.norm(from_joint, axis=1).argmax() == last and _is_body(points, limb):
-            return np.asarray(points + along)
+        points = along + _scattered(rng, n_markers, limb)
+        points = balanced(points, points @ limb.long_axis, across)
+        with_joint = np.vstack([points, -limb.length / 2 * limb.long_axis])
+        extent = with_joint - with_joint.mean(axis=0)
+        lengthwise = np.linalg.norm(extent @ limb.long_axis)
+        if lengthwise > _LENGTHWISE * np.linalg.norm(extent @ across, ord=2) and _is_body(
+            points - points.mean(axis=0), limb
+        ):
+            return points
+
+
+def balanced(points: Array, reach: Array, across: Array) -> Array:
+    """Move points least across an axis so that it is the line closest to them.
+
+    Parameters
+    ----------
+    points : (n, 3) m
+        From a point of the axis.
+    reach : (n,) m
+        How far along the axis each of them is.
+    across : (3, 3)
+        Projection onto the plane across the axis.
+    """
+    line = np.column_stack([np.ones_like(reach), reach])
+    slanting, *_ = np.linalg.lstsq(line, points @ across, rcond=None)
+    return np.asarray(points - line @ slanting)
 
 
 def _is_body(points: Array, limb: Limb) -> bool:
