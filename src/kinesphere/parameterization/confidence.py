@@ -97,7 +97,7 @@ def halves_disagreement(samples: JointSamples, axes: Array, labels: Labels, find
 
 
 def reasons_to_doubt(
-    quality: AxesQuality, axes: Array, nominal: Array | None, s: AxesSettings
+    quality: AxesQuality, axes: Array, nominal: Array | None, positions: Array, s: AxesSettings
 ) -> list[str]:
     """Return why these are not the axes of main movements, each a clause; or nothing.
 
@@ -108,6 +108,8 @@ def reasons_to_doubt(
     axes : (n_axes, 3)
     nominal : (n_axes, 3), optional
         Where anatomy has the axes, in the same order.
+    positions : (n, 3)
+        All of the calibration, at rest and moving.
     s
         The limits.
     """
@@ -125,6 +127,11 @@ def reasons_to_doubt(
             f"rotation about one axis at a time explains only {quality.explained:.0%} "
             "of the movement"
         )
+    if len(axes) == 1:
+        heights = np.arccos(np.clip(positions @ axes[0], -1, 1))
+        spread = float(np.rad2deg(np.sqrt(((heights - np.median(heights)) ** 2).mean())))
+        if spread > s.largest_spread:
+            doubts.append(f"the limb leaves the cone about its only axis by {spread:.0f}° rms")
     if nominal is not None:
         off = np.arccos(np.clip(np.abs((axes * nominal).sum(axis=1)), 0, 1))
         if (farthest := np.rad2deg(off.max())) > s.farthest:

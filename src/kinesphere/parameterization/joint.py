@@ -182,7 +182,17 @@ def _movement_axes(
     quality = assess_axes(samples, axes, find)
     if len(axes) < n_axes:
         return axes, quality, [f"only {len(axes)} of {n_axes} main movements is there"]
-    return axes, quality, reasons_to_doubt(quality, axes, nominal_axes(view.name, axes), options)
+    return (
+        axes,
+        quality,
+        reasons_to_doubt(
+            quality,
+            axes,
+            nominal_axes(view.name, axes),
+            view.samples.positions[view.calibration],
+            options,
+        ),
+    )
 
 
 def _movement_rest(

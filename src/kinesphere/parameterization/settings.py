@@ -129,6 +129,14 @@ class AxesSettings:
         high=1.0,
         source="main movements 0.9 and more, free motion 0.5-0.8",
     )
+    largest_spread: float = setting(
+        10.0,
+        "how far a limb may leave the cone about its only axis, rms over the calibration",
+        unit="deg",
+        low=0.0,
+        high=90.0,
+        source="functional knees 1-2 deg, walking knees 2-4, wrong elbow axes 15-25",
+    )
     smallest_angle: float = setting(
         20.0, "two axes closer than this are one", unit="deg", low=0.0, high=90.0
     )
