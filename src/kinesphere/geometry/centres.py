@@ -1,6 +1,7 @@
 """The point two limbs share, by maximum a posteriori, and how well the motion knows it."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,45 @@ CELL = np.deg2rad(10.0)
 """rad, poses nearer to each other than this count as one: soft tissue errs alike in both."""
 ALIGNED = 0.8
 """Least cosine between the axis of a hinge and the direction its motion knows least."""
+FIRM = 16.0
+"""Information from the motion, in units of the expectation's, that makes a hinge's centre its own."""
 _DIFFERENCE = 1e-6  # m, step of the variance's derivative, which is a quadratic: nearly exact
+
+
+@dataclass(frozen=True)
+class Turning:
+    """How a limb with a pose of its own turns in the frame of the limb that sees it."""
+
+    rotations: Array
+    """(n_frames, 3, 3) from the turning limb into the seeing one; NaN where unknown."""
+    shifts: Array
+    """(n_frames, 3) m, its origin."""
+    pose: Array
+    """(6, 6) uncertainty of its pose, as `pose_covariance` returns it."""
+    noise: float
+    """m, what a point fixed in both limbs may stray in each direction for other reasons."""
+
+    @cached_property
+    def known(self) -> NDArray[np.bool_]:
+        """(n_frames,) True where both limbs have a pose."""
+        turned = np.isfinite(self.rotations).all(axis=(1, 2))
+        return np.asarray(turned & np.isfinite(self.shifts).all(axis=1))
+
+    @cached_property
+    def back(self) -> Array:
+        """(n_known, 3, 3) from the seeing limb into the turning one."""
+        return np.swapaxes(self.rotations[self.known], 1, 2)
+
+    @cached_property
+    def means(self) -> tuple[Array, Array]:
+        """(3, 3) mean of `back`, and (9, 9) mean of its products with itself."""
+        products = np.einsum("nij,nlk->iljk", self.back, self.back).reshape(9, 9) / len(self.back)
+        return self.back.mean(axis=0), products
+
+    def place(self, centre: Array) -> Array:
+        """Return where a point of the seeing limb lies in the turning one, (3,) m → (n_known, 3) m."""
+        moved: Array = (self.back @ (centre - self.shifts[self.known])[..., None])[..., 0]
+        return moved
 
 
 @dataclass(frozen=True)
@@ -29,6 +68,8 @@ class View:
     """(n_markers,) m, standard deviation of each marker in every direction."""
     pose: Array
     """(6, 6) uncertainty of the seeing limb's own pose, as `pose_covariance` returns it."""
+    turning: Turning | None = None
+    """The orientation of the limb that is seen, where its markers give one."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +171,8 @@ def fit_centre(
 ) -> CentreFit:
     """Fit the point that markers turn about, by maximum a posteriori.
 
-    The data: every marker keeps its distance to the centre. Residuals have a soft-L1 loss, and each
+    The data: every marker keeps its distance to the centre; and where the limb has an orientation,
+    the centre stays where it is in that limb, too. Residuals have a soft-L1 loss, and each
     is measured against the noise it should have, that of the seeing limb's own pose included: an
     orientation shaky about a limb's long axis makes a centre far from that axis shaky, and without
     this the fit would flee to the axis (errors in variables; as in Sampson's distance the weight
@@ -159,14 +201,16 @@ def fit_centre(
         Most steps of the descent.
     """
     n_poses = count_poses(view, expected)
-    looks = n_poses / hidden**2
+    # distances and orientation are two readings of the same sightings
+    looks = n_poses / hidden**2 / (1 if view.turning is None else 2)
     starts = (expected, sphere_centre(view.points, expected))
     x = min(starts, key=lambda start: _cost(view, start, expected, spread))
     prior = np.eye(3) / spread**2
     x = _descend(view, x, expected, 0.01 * prior, looks, rounds)
     if hinge is not None:
-        weakest = np.linalg.eigh(_information(view, x, looks))[1][:, 0]
-        if abs(weakest @ hinge) > ALIGNED:
+        values, vectors = np.linalg.eigh(_information(view, x, looks))
+        weakest = vectors[:, 0]
+        if abs(weakest @ hinge) > ALIGNED and values[0] * spread**2 < FIRM:
             prior = prior + (tighter**2 - 1) / spread**2 * np.outer(weakest, weakest)
     x = _descend(view, x, expected, prior, looks, rounds)
     information = _information(view, x, looks)
@@ -195,19 +239,21 @@ def count_poses(view: View, centre: Array) -> int:
     return most
 
 
-class _Distances(NamedTuple):
-    """One marker's distances to the centre."""
+class _Term(NamedTuple):
+    """What should stay the same, less its usual value, over its expected noise."""
 
     residual: Array
-    """(n,) distance less the usual one, over its expected noise."""
+    """(n, k): one distance, or the three coordinates of the centre in the other limb."""
     jacobian: Array
-    """(n, 3) 1/m, how the residual follows the centre."""
+    """(n, k, 3) 1/m, how the residual follows the centre."""
 
 
 def _cost(view: View, x: Array, expected: Array, spread: float) -> float:
     """Return how badly a start fits, its distance from the expectation taken in mildly."""
-    terms = _distances(view, x)
-    off = np.concatenate([np.abs(term.residual) for term in terms]) if terms else np.zeros(1)
+    terms = _terms(view, x)
+    off = (
+        np.concatenate([np.abs(term.residual).ravel() for term in terms]) if terms else np.zeros(1)
+    )
     far = float(np.linalg.norm(x - expected)) / (10 * spread)
     return float(np.log(np.mean(off) + NOISE_FLOOR)) + max(0.0, far - 1.0)
 
@@ -218,21 +264,55 @@ def _descend(
     """Iterate Gauss-Newton; weights and scale of the residuals follow the current point."""
     for _ in range(rounds):
         hessian, gradient = prior, prior @ (x - expected)
-        for residual, jacobian in _distances(view, x):
+        for residual, jacobian in _terms(view, x):
+            if len(residual) == 0:
+                continue
             scale, w = _scale(residual)
             share = looks / len(residual) / scale**2
-            hessian = hessian + share * (jacobian * w[:, None]).T @ jacobian
-            gradient = gradient + share * jacobian.T @ (w * residual)
+            hessian = hessian + share * np.einsum("nki,n,nkj->ij", jacobian, w, jacobian)
+            gradient = gradient + share * np.einsum("nki,n,nk->i", jacobian, w, residual)
         step = -np.linalg.solve(hessian, gradient)
         length = float(np.linalg.norm(step))
         x = x + step * min(1.0, 0.05 / max(length, 1e-12))
-        if length < 1e-8:
+        if length < 1e-7:
             break
     return x
 
 
-def _distances(view: View, centre: Array) -> list[_Distances]:
-    """Return every marker's distances to the centre, and how they follow it."""
+def _terms(view: View, centre: Array) -> list[_Term]:
+    """Return what should stay the same about a centre, and how it follows the centre."""
+    terms = _distances(view, centre)
+    if view.turning is not None and view.turning.known.any():
+        terms.append(_place(view.turning, view.pose, centre))
+    return terms
+
+
+def _place(turning: Turning, seeing: Array, centre: Array) -> _Term:
+    """Return where the centre lies in the turning limb, less its mean place.
+
+    Minimising it alone is SCoRE (Ehrig et al. 2006) with the inner centre solved out.
+    """
+    place = turning.place(centre)
+    usual, products = turning.means
+    off = place - place.mean(axis=0)
+
+    def whitener(c: Array) -> Array:
+        here = place.mean(axis=0) + usual @ (c - centre)
+        own = point_covariance(turning.pose, here) + turning.noise**2 * np.eye(3)
+        # the seeing limb's share, as the turning one sees it on average
+        carried = (products @ point_covariance(seeing, c).ravel()).reshape(3, 3)
+        values, vectors = np.linalg.eigh(own + carried)
+        scaled: Array = (vectors / np.sqrt(np.maximum(values, turning.noise**2))) @ vectors.T
+        return scaled
+
+    w = whitener(centre)
+    change = np.stack([whitener(centre + _DIFFERENCE * e) - w for e in np.eye(3)], axis=-1)
+    jacobian = w @ (turning.back - usual) + np.einsum("ijk,nj->nik", change / _DIFFERENCE, off)
+    return _Term(off @ w.T, jacobian)
+
+
+def _distances(view: View, centre: Array) -> list[_Term]:
+    """Return every marker's distances to the centre."""
     own = point_covariance(view.pose, centre)
     moved = point_covariance(view.pose, centre + _DIFFERENCE * np.eye(3))
     terms = []
@@ -251,14 +331,16 @@ def _distances(view: View, centre: Array) -> list[_Distances]:
             off = (distance - (w * distance).sum() / w.sum()) / expected
         change = -along + np.average(along, axis=0, weights=w)
         jacobian = change / expected[:, None] - 0.5 * (off / variance)[:, None] * growth
-        terms.append(_Distances(off, jacobian))
+        terms.append(_Term(off[:, None], jacobian[:, None]))
     return terms
 
 
 def _scale(residual: Array) -> tuple[float, Array]:
-    """Return the robust scale of residuals and their soft-L1 weights, (n,)."""
-    scale = max(1.4826 * float(np.median(np.abs(residual))), NOISE_FLOOR)
-    return scale, 1 / np.sqrt(1 + (residual / (2 * scale)) ** 2)
+    """Return the robust scale of residuals and their soft-L1 weights, (n,) or (n, k) → (n,)."""
+    size = np.abs(residual) if residual.ndim == 1 else np.linalg.norm(residual, axis=1)
+    usual = 0.6745 if residual.ndim == 1 or residual.shape[1] == 1 else 1.538  # median of |normal|
+    scale = max(float(np.median(size)) / usual, NOISE_FLOOR)
+    return scale, 1 / np.sqrt(1 + (size / (2 * scale)) ** 2)
 
 
 def _information(view: View, centre: Array, looks: float) -> Array:
@@ -267,7 +349,7 @@ def _information(view: View, centre: Array, looks: float) -> Array:
     The directions to the markers are noisy themselves, which looks like motion; that share is
     taken off again.
     """
-    scales = [_scale(term.residual)[0] for term in _distances(view, centre)]
+    scales = [_scale(term.residual)[0] for term in _terms(view, centre)]
     scale = float(np.median(scales)) if scales else 1.0
     own = point_covariance(view.pose, centre)
     total = np.zeros((3, 3))
@@ -284,7 +366,25 @@ def _information(view: View, centre: Array, looks: float) -> Array:
         told = np.einsum("ni,n,nj->ij", spread, w, spread) - np.einsum("n,nij->ij", w, shaky)
         values, vectors = np.linalg.eigh(told)
         total += (vectors * np.maximum(values, 0.0)) @ vectors.T * looks / len(y)
+    if view.turning is not None and view.turning.known.any():
+        total += looks * _turn_information(view.turning, view.pose, centre)
     return total
+
+
+def _turn_information(turning: Turning, seeing: Array, centre: Array) -> Array:
+    """Return what one look at the other limb's orientation tells about the centre, (3, 3) 1/m²."""
+    w = _scale(_place(turning, seeing, centre).residual)[1]
+    turns = turning.back - turning.means[0]
+    place = turning.place(centre)
+    off = np.linalg.norm(place - place.mean(axis=0), axis=1)
+    size = max(float(np.median(off)) / 1.538, NOISE_FLOOR * turning.noise)
+    told = np.einsum("nki,n,nkj->ij", turns, w, turns) / len(turns)
+    # shaky orientations look like motion, each in the two directions across it
+    shaky = (np.trace(turning.pose[:3, :3]) + np.trace(seeing[:3, :3])) * 2 / 3
+    shaky *= min(1.0, (size / turning.noise) ** 2)
+    values, vectors = np.linalg.eigh(told - shaky * np.eye(3))
+    information: Array = (vectors * np.maximum(values, 0.0) / size**2) @ vectors.T
+    return information
 
 
 def _median(values: Array) -> Array:

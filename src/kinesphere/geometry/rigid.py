@@ -146,7 +146,7 @@ def fit_shape(
         )
         s = np.maximum(outlier, 3 * usual)
         doubt = np.where(known, 1 / (1 + np.where(known, residual / s, 0.0) ** 2) ** 2, 1.0)
-        if change < 1e-10 and not new:
+        if change < 1e-7 and not new:
             break
     return _principal(shape)
 

@@ -73,11 +73,18 @@ def measure_shape(
     outlier, min_spread
         m, as `kinesphere.geometry.rigid.fit_shape` takes them.
     noise : (n_points,) m, optional
-        First guess of each point's noise.
+        Of each point, in each direction, where it is known; found from the residuals otherwise.
+
+    Returns
+    -------
+    shape : (n_points, 3) m
+    noise : (n_points,) m
+    fit : RigidFit
+        Or None instead of all three where no frame shows a shape.
     """
     n = points.shape[1]
-    noise = np.zeros(n) if noise is None else noise
-    for _ in range(4):
+    given, noise = noise, np.zeros(n) if noise is None else noise
+    for _ in range(4 if given is None else 1):
         weights = 1 / (noise**2 + NOISE**2)
         shape = fit_shape(points, weights, outlier=outlier, min_spread=min_spread)
         if shape is None or not np.isfinite(shape).all():
@@ -85,17 +92,21 @@ def measure_shape(
         fit = fit_rigid(shape, points, weights, min_spread=min_spread)
         residual = np.linalg.norm(into_frame(fit.rotations, fit.shifts, points) - shape, axis=2)
         # the fit itself takes up six of the coordinates: what is left looks smaller than the noise
-        noise = robust_rms(residual) * np.sqrt(3 * n / max(3 * n - 6, 1))
+        if given is None:
+            noise = robust_rms(residual) * np.sqrt(3 * n / max(3 * n - 6, 1))
     return shape, noise, fit
 
 
 def robust_rms(residuals: Array) -> Array:
-    """Return the rms of lengths over frames, the longest 5 % left out, (n, m) m → (m,) m."""
+    """Return the rms in each direction of lengths in space, (n, m) m → (m,) m.
+
+    The longest 5 % are left out.
+    """
     rms = np.zeros(residuals.shape[1])
     for i, column in enumerate(residuals.T):
         known = np.sort(column[np.isfinite(column)])
         if len(known):
-            rms[i] = np.sqrt(np.mean(known[: max(1, int(0.95 * len(known) + 0.5))] ** 2))
+            rms[i] = np.sqrt(np.mean(known[: max(1, int(0.95 * len(known) + 0.5))] ** 2) / 3)
     return rms
 
 

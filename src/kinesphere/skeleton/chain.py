@@ -1,21 +1,25 @@
 """Limbs and joint centres measured from the root outward, on a sample of the frames."""
 
-from dataclasses import dataclass
-
 import warnings
+from dataclasses import dataclass
 
 import numpy as np
 
 from kinesphere.data import Array, JointModel, PoseFlag, TopologicalModel
 from kinesphere.errors import DegenerateMotion
-from kinesphere.geometry.centres import CentreFit, View, fit_centre
-from kinesphere.geometry.rigid import into_frame, out_of_frame
+from kinesphere.geometry.centres import CentreFit, Turning, View, fit_centre
+from kinesphere.geometry.rigid import (
+    RigidFit,
+    into_frame,
+    out_of_frame,
+    point_covariance,
+    pose_covariance,
+)
 from kinesphere.geometry.rotations import mean_rotation, rotation_between
 from kinesphere.skeleton.body import NOISE, Body, measure_shape, robust_rms
 from kinesphere.skeleton.body_axes import (
     HINGE_SIGN,
     beside,
-    flexion_normals,
     right_from_hinge,
     right_from_pairs,
     right_from_parent,
@@ -23,7 +27,7 @@ from kinesphere.skeleton.body_axes import (
     up_of_trunk,
 )
 from kinesphere.skeleton.landmarks import expected_centre
-from kinesphere.skeleton.poses import Poses, aim, fit_poses, Neighbour, no_poses
+from kinesphere.skeleton.poses import Neighbour, Poses, aim, fit_poses, no_poses
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree
 
@@ -105,7 +109,12 @@ def _measure_limb(
     solid = measure_shape(own, outlier, min_spread) if len(labels) > 2 else None
     usual = float(np.sqrt(np.mean(parent.noise**2)) if solid is None else 0.0)
     noise = np.full(len(labels), usual) if solid is None else solid[1]
-    view = View(seen_by_parent, np.hypot(noise, NOISE), parent.pose_covariance)
+    view = View(
+        seen_by_parent,
+        np.hypot(noise, NOISE),
+        parent.pose_covariance,
+        None if solid is None else _turning(solid, parent),
+    )
     fit = fit_centre(
         view,
         expected,
@@ -116,10 +125,19 @@ def _measure_limb(
     )
     measured = MeasuredJoint(joint, fit, expected, source)
     centre = out_of_frame(parent.rotations, parent.shifts, fit.centre[None])[:, 0]
-    with_joint = measure_shape(np.concatenate([own, centre[:, None]], axis=1), outlier, min_spread)
-    if with_joint is None:
+    with_joint = np.concatenate([own, centre[:, None]], axis=1)
+    if solid is None:
+        found = measure_shape(with_joint, outlier, min_spread)
+    else:
+        found = measure_shape(
+            with_joint,
+            outlier,
+            min_spread,
+            noise=np.append(noise, _joint_noise(solid, centre, fit.noise)),
+        )
+    if found is None:
         return _measure_line(joint, parent, tree, sample, centre, own, settings), measured
-    shape, noise, _ = with_joint
+    shape, noise, _ = found
     body = Body(joint.child, joint.parent, labels, shape[:-1], noise[:-1], shape[-1])
     body.centre_noise = float(noise[-1])
     carried = (Neighbour(_known(body.centre), centre, body.centre_noise),)
@@ -129,6 +147,30 @@ def _measure_limb(
     if np.isfinite(relative).all(axis=(1, 2)).any():
         body.rest = mean_rotation(relative)
     return body, measured
+
+
+def _turning(solid: tuple[Array, Array, RigidFit], parent: Body) -> Turning:
+    """Return how a limb with a pose of its own turns in its parent."""
+    shape, noise, pose = solid
+    return Turning(
+        np.swapaxes(parent.rotations, 1, 2) @ pose.rotations,
+        into_frame(parent.rotations, parent.shifts, pose.shifts[:, None])[:, 0],
+        pose_covariance(shape, np.hypot(noise, NOISE)),
+        float(np.hypot(np.sqrt(np.mean(noise**2)), NOISE)),
+    )
+
+
+def _joint_noise(solid: tuple[Array, Array, RigidFit], centre: Array, least: float) -> float:
+    """Return how far, in m, a joint strays in a limb beyond what the limb's own pose explains."""
+    shape, noise, pose = solid
+    local = into_frame(pose.rotations, pose.shifts, centre[:, None])
+    known = np.isfinite(local).all(axis=(1, 2))
+    if not known.any():
+        return least
+    usual = np.median(local[known, 0], axis=0)
+    strays = float(robust_rms(np.linalg.norm(local - usual, axis=2))[0])
+    shaky = point_covariance(pose_covariance(shape, np.hypot(noise, NOISE)), usual)
+    return float(np.sqrt(max(strays**2 - np.trace(shaky) / 3, least**2)))
 
 
 def _measure_line(

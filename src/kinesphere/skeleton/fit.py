@@ -4,10 +4,7 @@ import numpy as np
 
 import kinesphere
 from kinesphere.data import (
-    Array,
-    Json,
     Motion,
-    PoseFlag,
     Recording,
     Skeleton,
     Step,
@@ -20,7 +17,7 @@ from kinesphere.skeleton.report import describe_joint, describe_limb
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.solve import residuals, solve_poses
-from kinesphere.skeleton.tree import Tree, find_tree
+from kinesphere.skeleton.tree import find_tree
 
 DEFAULT = SkeletonSettings()
 

@@ -7,7 +7,7 @@ from kinesphere.geometry.rigid import into_frame
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import beside
 
-NO_LANDMARK_SHARE = 0.5
+NO_LANDMARK_SHARE = 0.25
 """Without a landmark the centre is expected between the two limbs, to this share of their distance."""
 
 

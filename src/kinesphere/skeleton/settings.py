@@ -10,12 +10,12 @@ class SkeletonSettings:
     """Settings of the stage ``skeleton``; lengths here are in the units people read."""
 
     sample_frames: int = setting(
-        800,
+        600,
         "frames that shapes and joint centres are measured on, spread evenly over the way the "
         "markers travel",
         low=10,
         high=100_000,
-        source="800 frames give the centres of 24,000 to 0.1 mm on synthetic motion",
+        source="more frames change joint centres by less than their uncertainty",
     )
     outlier_mm: float = setting(
         3.0,

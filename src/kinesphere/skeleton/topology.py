@@ -1,0 +1,128 @@
+"""Which limbs meet at a joint, found from how they move: a minimum spanning tree of joint costs.
+
+In the spirit of Hornung, Sar-Dessai, Kobbelt (IEEE VR 2005) and of Kirk, O'Brien, Forsyth (CVPR
+2005), whose spanning tree it takes; the cost of a pair is the best of what can be had for it.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.geometry.centres import score_centre, sphere_centre
+from kinesphere.geometry.rigid import RigidFit, into_frame
+from kinesphere.skeleton.body import measure_shape
+
+NEARNESS = 0.05
+"""Cost in m of a metre between a joint and the nearest markers: a joint is where limbs are close."""
+OUTLIER = 0.003
+"""m, residual at which a sighting within its limb starts to be doubted."""
+MIN_SPREAD = 0.005
+"""m, least extent of a limb's markers beside a line for the limb to have an orientation."""
+
+
+def limb_poses(clouds: Mapping[str, Array]) -> dict[str, RigidFit]:
+    """Return the poses of the limbs that have one of their own.
+
+    Parameters
+    ----------
+    clouds
+        Limb → (n_frames, n_markers, 3) m.
+    """
+    poses = {}
+    for limb, points in clouds.items():
+        if points.shape[1] > 2 and (measured := measure_shape(points, OUTLIER, MIN_SPREAD)):
+            poses[limb] = measured[2]
+    return poses
+
+
+def joint_cost(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit | None) -> float:
+    """Return how badly two limbs look like neighbours, in m; infinite if they were never seen together.
+
+    The better of two views: how far apart the joint's two images are (SCoRE where both limbs have
+    poses, spheres about a common centre where one has), and how steady one marker's distances to the
+    other limb are (an acromion near an upper arm). Either grows with the way to the nearest marker.
+
+    Parameters
+    ----------
+    a, b : (n_frames, n_markers, 3) m
+    pose_a, pose_b
+        Poses of the limbs; None for a limb with too few markers.
+    """
+    return min(_centre_cost(a, b, pose_a, pose_b), _distance_cost(a, b), _distance_cost(b, a))
+
+
+def _centre_cost(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit | None) -> float:
+    if pose_a is None:
+        return np.inf if pose_b is None else _centre_cost(b, a, pose_b, None)
+    by_a = into_frame(pose_a.rotations, pose_a.shifts, b)
+    if pose_b is None:
+        known = by_a[np.isfinite(by_a).all(axis=2)]
+        if len(known) == 0:
+            return np.inf
+        centre = sphere_centre(by_a, np.median(known, axis=0), ridge=1e-2)
+        off = _deviations(np.linalg.norm(by_a - centre, axis=2))
+        own = into_frame(pose_a.rotations, pose_a.shifts, a)
+        far = max(_nearest(own, centre), _nearest(by_a, centre))
+        return float(np.sqrt(np.mean(off**2))) + NEARNESS * far
+    relative = np.swapaxes(pose_a.rotations, 1, 2) @ pose_b.rotations
+    shifts = into_frame(pose_a.rotations, pose_a.shifts, pose_b.shifts[:, None])[:, 0]
+    in_a, in_b, rms = score_centre(relative, shifts)
+    if not np.isfinite(rms):
+        return np.inf
+    own_a = into_frame(pose_a.rotations, pose_a.shifts, a)
+    own_b = into_frame(pose_b.rotations, pose_b.shifts, b)
+    return rms + NEARNESS * (_nearest(own_a, in_a) + _nearest(own_b, in_b))
+
+
+def _nearest(points: Array, centre: Array) -> float:
+    """Return the median distance from a point to the nearest marker, m."""
+    distance = np.linalg.norm(points - centre, axis=2)
+    usual = [np.median(d[np.isfinite(d)]) for d in distance.T if np.isfinite(d).any()]
+    return float(min(usual, default=np.inf))
+
+
+def _distance_cost(a: Array, b: Array) -> float:
+    """Return the steadiest marker of ``a``: mean deviation of its distances to ``b``, plus nearness."""
+    best = np.inf
+    for m in range(a.shape[1]):
+        distance = np.linalg.norm(b - a[:, m : m + 1], axis=2)
+        if not np.isfinite(distance).any(axis=0).all():
+            continue
+        usual = min(float(np.median(d[np.isfinite(d)])) for d in distance.T)
+        best = min(best, float(_deviations(distance).mean()) + NEARNESS * usual)
+    return best
+
+
+def _deviations(distances: Array) -> Array:
+    """Return the standard deviation of each column, its outer tenth left out, (n, m) m → (m,) m."""
+    out = np.zeros(distances.shape[1])
+    for i, column in enumerate(distances.T):
+        d = np.sort(column[np.isfinite(column)])
+        cut = len(d) // 20
+        out[i] = np.std(d[cut : len(d) - cut]) if len(d) > 2 else 0.0
+    return out
+
+
+def spanning_tree(
+    names: tuple[str, ...], costs: Mapping[tuple[str, str], float]
+) -> list[tuple[str, str]]:
+    """Return the edges of the minimum spanning tree (Kruskal 1956), cheapest first.
+
+    Ties go by the order of ``names``. Pairs of infinite cost stay apart.
+    """
+    group = {name: name for name in names}
+
+    def top(name: str) -> str:
+        while group[name] != name:
+            name = group[name]
+        return name
+
+    at = {name: i for i, name in enumerate(names)}
+    ordered = sorted(costs, key=lambda pair: (costs[pair], at[pair[0]], at[pair[1]]))
+    edges = []
+    for a, b in ordered:
+        if np.isfinite(costs[a, b]) and top(a) != top(b):
+            group[top(a)] = top(b)
+            edges.append((a, b))
+    return edges
