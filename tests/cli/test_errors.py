@@ -123,6 +123,11 @@ def test_solve_options_that_cannot_be_meant(options, said, call, trc, tmp_path):
     assert not output.exists()
 
 
+@pytest.mark.slow
+def test_a_way_to_face_that_cannot_be_meant(call, trc, tmp_path):
+    assert_one_line(call("solve", trc, "-o", tmp_path / "o", "--facing", "north"), "north", "+x")
+
+
 def test_a_model_that_is_a_recording(call, trc, c3d, tmp_path):
     assert_one_line(call("solve", trc, "-o", tmp_path / "o", "--model", c3d), "not a model")
 

@@ -76,9 +76,21 @@ def print_pairs(console: Console, pairs: Iterable[tuple[str, str]]) -> None:
 
 
 def print_table(
-    console: Console, header: Sequence[str], rows: Iterable[Sequence[str]], right: str = ""
+    console: Console,
+    header: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    right: str = "",
+    doubtful: Sequence[str] = (),
 ) -> None:
-    """Print a table; ``right`` has an ``r`` at each column of numbers, e.g. ``"lrr"``."""
+    """Print a table.
+
+    Parameters
+    ----------
+    right
+        An ``r`` at each column of numbers, e.g. ``"lrr"``.
+    doubtful
+        Words that should catch the eye.
+    """
     table = Table(
         box=box.SIMPLE_HEAD,
         padding=(0, 2, 0, 0),
@@ -93,7 +105,8 @@ def print_table(
             Text(name), justify=justify, overflow="fold", style=style, no_wrap=justify == "right"
         )
     for row in rows:
-        table.add_row(*(Text(plain(cell)) for cell in row))
+        cells = (plain(cell) for cell in row)
+        table.add_row(*(Text(c, style="yellow" if c in doubtful else "") for c in cells))
     console.print(table)
 
 

@@ -33,7 +33,7 @@ def describe_recording(recording: Recording, subject: str | None = None) -> dict
     read = recording.history[0] if recording.history else None
     return {
         "kind": "recording",
-        "read": dict(read.findings) if read else {},
+        "read": {**read.settings, **read.findings} if read else {},
         "n_frames": recording.n_frames,
         "rate_hz": recording.rate,
         "duration_s": recording.n_frames / recording.rate,
@@ -61,7 +61,7 @@ def show_recording(summary: dict[str, Any]) -> None:
     """Print the summary as tables."""
     console = stdout()
     read = summary["read"]
-    print_title(console, summary["file"], str(read.get("format", "")))
+    print_title(console, summary["file"], str(read.get("format", "")).upper())
     print_pairs(console, _pairs(summary))
     worst = summary["gaps"]["worst"]
     if worst:
@@ -87,6 +87,7 @@ def show_recording(summary: dict[str, Any]) -> None:
             console,
             ("", "found", "remedy"),
             [(f["severity"], f["what"], f["remedy"]) for f in findings],
+            doubtful=("error", "warning"),
         )
 
 

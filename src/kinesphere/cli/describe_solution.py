@@ -66,6 +66,7 @@ def show_solution(summary: dict[str, Any], solution: Solution) -> None:
         ("joint", "residual", "range", "centre", "axes", "angles 5–95 %", "twist"),
         [_joint_cells(row) for row in joint_rows(solution)],
         "lrrllrr",
+        doubtful=("undetermined",),
     )
     if summary["warnings"]:
         print_title(console, "Warnings")

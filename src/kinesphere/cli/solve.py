@@ -51,6 +51,15 @@ def solve(
             help="Take axes and rest positions from a solved recording of the same person.",
         ),
     ] = None,
+    facing: Annotated[
+        str | None,
+        typer.Option(
+            "--facing",
+            metavar="WAY",
+            help="Where the person looks while standing, in the world (+x, -z, …; y is up), if "
+            "nothing in the recording tells; or what to believe: feet, knees, elbows, walking.",
+        ),
+    ] = None,
     assignments: SetOption = None,
     settings_file: SettingsOption = None,
     as_json: JsonOption = False,
@@ -77,6 +86,7 @@ def solve(
             subject=subject,
             calibration=span,
             calibration_from=read_solved(calibration_from) if calibration_from else None,
+            facing=facing,  # type: ignore[arg-type]  # normalize names what it knows
             settings=settings,
             progress=progress,
         )

@@ -20,16 +20,16 @@ def stage_in_words(stage: dict[str, Any], summary: dict[str, Any]) -> str:
         As ``describe_solution`` returns it.
     """
     words = _WORDS.get(stage["name"], _any)
-    return words(stage["findings"], summary)
+    return words({**stage["settings"], **stage["findings"]}, summary)
 
 
 def _any(found: dict[str, Any], _: dict[str, Any]) -> str:
-    plain = {k: v for k, v in found.items() if isinstance(v, int | float | str) and v != ""}
-    return ", ".join(" ".join(finding_in_words(k, v)) for k, v in list(plain.items())[:5])
+    plain = [(k, v) for k, v in found.items() if isinstance(v, int | float | str) and v != ""]
+    return ", ".join(" ".join(finding_in_words(k, v)) for k, v in plain[:5])
 
 
 def _read(found: dict[str, Any], summary: dict[str, Any]) -> str:
-    kind = [found.get(key, "") for key in ("format", "encoding", "unit")]
+    kind = [str(found.get("format", "")).upper(), found.get("encoding"), found.get("unit")]
     head = ", ".join(str(word) for word in kind if word)
     return f"{head}, {summary['n_frames']:,} frames at {summary['rate_hz']:g} Hz".lstrip(", ")
 
