@@ -118,18 +118,18 @@ def fit_shape(
     ----------
     .. [1] Gower (1975), Psychometrika 40(1), 33-51, doi:10.1007/BF02291478.
     """
-    seen = np.isfinite(points).all(axis=2)
+    seen = np.asarray(np.isfinite(points).all(axis=2))
     start = _usual_frame(points, seen, min_spread)
     if start is None:
         return None
     w0 = np.ones(points.shape[1]) if weights is None else weights
     shape = np.where(seen[start][:, None], points[start], np.nan)
-    shape = shape - np.nanmean(shape, axis=0)
+    shape = shape - points[start][seen[start]].mean(axis=0)
     doubt = np.ones(seen.shape)
     for _ in range(rounds):
         fit = fit_rigid(shape, points, w0 * doubt, min_spread=min_spread)
         aligned = into_frame(fit.rotations, fit.shifts, points)
-        known = np.isfinite(aligned).all(axis=2)
+        known = np.asarray(np.isfinite(aligned).all(axis=2))
         share = np.where(known, doubt, 0.0)
         total = share.sum(axis=0)
         with np.errstate(invalid="ignore"):

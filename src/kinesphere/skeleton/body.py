@@ -37,7 +37,7 @@ class Body:
     up: Array | None = None
     """(3,) unit vector, the body's up or the limb's proximal direction, seen from the limb."""
     twist_open: bool = False
-    """True where markers and joint lie on one line, so that nothing of the limb's own tells its twist."""
+    """True where markers and joint lie on one line: nothing of the limb's own tells its twist."""
     borrow: Array | None = None
     """(3,) unit vector in the limb, the normal of the plane it makes with the next limb; only where
     the twist is open and the joint between them bends."""
@@ -83,18 +83,19 @@ def measure_shape(
         Or None instead of all three where no frame shows a shape.
     """
     n = points.shape[1]
-    given, noise = noise, np.zeros(n) if noise is None else noise
-    for _ in range(4 if given is None else 1):
-        weights = 1 / (noise**2 + NOISE**2)
+    known = np.zeros(n) if noise is None else noise
+    for _ in range(4 if noise is None else 1):
+        weights = 1 / (known**2 + NOISE**2)
         shape = fit_shape(points, weights, outlier=outlier, min_spread=min_spread)
         if shape is None or not np.isfinite(shape).all():
             return None
         fit = fit_rigid(shape, points, weights, min_spread=min_spread)
         residual = np.linalg.norm(into_frame(fit.rotations, fit.shifts, points) - shape, axis=2)
         # the fit itself takes up six of the coordinates: what is left looks smaller than the noise
-        if given is None:
-            noise = robust_rms(residual) * np.sqrt(3 * n / max(3 * n - 6, 1))
-    return shape, noise, fit
+        if noise is None:
+            known = robust_rms(residual) * np.sqrt(3 * n / max(3 * n - 6, 1))
+    assert shape is not None  # every round has found one
+    return shape, known, fit
 
 
 def robust_rms(residuals: Array) -> Array:

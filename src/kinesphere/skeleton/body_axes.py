@@ -3,14 +3,13 @@
 import numpy as np
 
 from kinesphere.data import Array, TopologicalModel
+from kinesphere.skeleton.averages import mean_seen
 from kinesphere.skeleton.body import Body
 
-HINGE_SIGN = {"elbow": 1.0, "knee": -1.0}
-"""cross(upper limb, lower limb), both pointing away from the body, times this points to the right:
-elbows flex to the front, knees to the back."""
 FLEXED_SHARE = 0.05
 """Least share of frames in which a hinge must be flexed for its axis to be believed."""
 UPRIGHT = np.cos(np.deg2rad(30.0))
+"""Least cosine between a trunk and the vertical for the world's up to be the body's."""
 
 
 def unit(vector: Array) -> Array:
@@ -41,35 +40,25 @@ def right_from_parent(body: Body, parent: Body) -> Array | None:
     if parent.right is None:
         return None
     seen = np.swapaxes(body.rotations, 1, 2) @ (parent.rotations @ parent.right)[..., None]
-    mean = np.nanmean(seen[..., 0], axis=0)
+    mean = mean_seen(seen[..., 0])
     return unit(mean) if np.linalg.norm(mean) > 0.3 else None
 
 
-def flexion_normals(upper: Array, lower: Array, flexed: float) -> Array:
-    """Return ``cross(upper, lower)`` where two limbs make an angle, (n, 3), (n, 3) m → (n, 3).
+def right_from_hinge(body: Body, normals: Array) -> Array | None:
+    """Return the normal of two limbs' plane as the proximal one sees it, (3,); None if too rare.
 
     Parameters
     ----------
-    upper, lower : (n_frames, 3)
-        Along the proximal and the distal limb, away from the body.
-    flexed
-        rad, least angle between them; NaN in all other frames.
+    normals : (n_sample, 3)
+        In the world, NaN where the joint is not flexed.
     """
-    normal = np.cross(unit(upper), unit(lower))
-    enough = np.linalg.norm(normal, axis=1) > np.sin(flexed)
-    return np.where(enough[:, None], normal, np.nan)
-
-
-def right_from_hinge(body: Body, upper: Array, lower: Array, flexed: float) -> Array | None:
-    """Return the normal of two limbs' plane as the proximal one sees it, (3,); None if too rare."""
-    normals = flexion_normals(upper, lower, flexed)
     local = (np.swapaxes(body.rotations, 1, 2) @ normals[..., None])[..., 0]
     known = np.isfinite(local).all(axis=1)
     if known.sum() < max(5, FLEXED_SHARE * len(local)):
         return None
     mean = local[known].mean(axis=0)
-    length = np.linalg.norm(mean) / np.linalg.norm(local[known], axis=1).mean()
-    return unit(mean) if length > 0.7 else None
+    steadiness = np.linalg.norm(mean) / np.linalg.norm(local[known], axis=1).mean()
+    return unit(mean) if steadiness > 0.7 else None
 
 
 def up_of_trunk(body: Body, towards_head: Array) -> Array:
@@ -89,5 +78,5 @@ def up_of_trunk(body: Body, towards_head: Array) -> Array:
         local = body.rotations[upright][:, 1]  # world y seen from the limb
     else:
         local = (np.swapaxes(body.rotations, 1, 2) @ along[..., None])[..., 0]
-    mean = np.nanmean(local, axis=0) if np.isfinite(local).any() else np.array([0.0, 1.0, 0.0])
-    return unit(mean)
+    mean = mean_seen(local)
+    return unit(mean) if np.isfinite(mean).all() else np.array([0.0, 1.0, 0.0])

@@ -1,11 +1,10 @@
 """Limbs and joint centres measured from the root outward, on a sample of the frames."""
 
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
-from kinesphere.data import Array, JointModel, PoseFlag, TopologicalModel
+from kinesphere.data import Array, JointModel, TopologicalModel
 from kinesphere.errors import DegenerateMotion
 from kinesphere.geometry.centres import CentreFit, Turning, View, fit_centre
 from kinesphere.geometry.rigid import (
@@ -15,19 +14,13 @@ from kinesphere.geometry.rigid import (
     point_covariance,
     pose_covariance,
 )
-from kinesphere.geometry.rotations import mean_rotation, rotation_between
+from kinesphere.geometry.rotations import mean_rotation
 from kinesphere.skeleton.body import NOISE, Body, measure_shape, robust_rms
-from kinesphere.skeleton.body_axes import (
-    HINGE_SIGN,
-    beside,
-    right_from_hinge,
-    right_from_pairs,
-    right_from_parent,
-    unit,
-    up_of_trunk,
-)
 from kinesphere.skeleton.landmarks import expected_centre
-from kinesphere.skeleton.poses import Neighbour, Poses, aim, fit_poses, no_poses
+from kinesphere.skeleton.limb_axes import find_axes
+from kinesphere.skeleton.lines import measure_line
+from kinesphere.skeleton.neighbours import cloud
+from kinesphere.skeleton.poses import Neighbour, fit_poses
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree
 
@@ -65,19 +58,14 @@ def measure_chain(
         If the root's markers never show an orientation.
     """
     bodies = {tree.root: _measure_root(tree, sample, settings)}
-    _find_axes(bodies[tree.root], None, tree, model, sample, settings)
+    find_axes(bodies[tree.root], None, tree, model, sample, settings)
     joints: dict[str, MeasuredJoint] = {}
     for joint in tree.joints:
         parent = bodies[joint.parent]
         body, measured = _measure_limb(joint, parent, tree, sample, settings)
         bodies[joint.child], joints[joint.child] = body, measured
-        _find_axes(body, parent, tree, model, sample, settings)
+        find_axes(body, parent, tree, model, sample, settings)
     return bodies, joints
-
-
-def cloud(labels: tuple[str, ...], sample: dict[str, Array]) -> Array:
-    """Return markers side by side, (n_sample, n_labels, 3) m."""
-    return np.stack([sample[label] for label in labels], axis=1)
 
 
 def _measure_root(tree: Tree, sample: dict[str, Array], settings: SkeletonSettings) -> Body:
@@ -136,7 +124,7 @@ def _measure_limb(
             noise=np.append(noise, _joint_noise(solid, centre, fit.noise)),
         )
     if found is None:
-        return _measure_line(joint, parent, tree, sample, centre, own, settings), measured
+        return measure_line(joint, parent, tree, sample, centre, settings), measured
     shape, noise, _ = found
     body = Body(joint.child, joint.parent, labels, shape[:-1], noise[:-1], shape[-1])
     body.centre_noise = float(noise[-1])
@@ -171,153 +159,6 @@ def _joint_noise(solid: tuple[Array, Array, RigidFit], centre: Array, least: flo
     strays = float(robust_rms(np.linalg.norm(local - usual, axis=2))[0])
     shaky = point_covariance(pose_covariance(shape, np.hypot(noise, NOISE)), usual)
     return float(np.sqrt(max(strays**2 - np.trace(shaky) / 3, least**2)))
-
-
-def _measure_line(
-    joint: JointModel,
-    parent: Body,
-    tree: Tree,
-    sample: dict[str, Array],
-    centre: Array,
-    own: Array,
-    settings: SkeletonSettings,
-) -> Body:
-    """Measure a limb whose markers and joint lie on a line: its twist is its neighbours' word."""
-    labels = tree.markers[joint.child]
-    arms = own - centre[:, None]
-    lengths = np.nanmedian(np.linalg.norm(arms, axis=2), axis=0)
-    far = int(lengths.argmax())
-    towards = unit(arms[:, far])
-    by_parent = (np.swapaxes(parent.rotations, 1, 2) @ towards[..., None])[..., 0]
-    here = unit(np.nanmean(by_parent, axis=0))
-    if not np.isfinite(here).all():
-        here = np.array([0.0, -1.0, 0.0])
-    shape = lengths[:, None] * here
-    off = np.abs(np.linalg.norm(arms, axis=2) - lengths)
-    body = Body(joint.child, joint.parent, labels, shape, robust_rms(off), np.zeros(3))
-    body.twist_open = True
-    flexed = np.deg2rad(settings.flexed_deg)
-    normals = next_normals(body.name, towards, own[:, far], tree, sample)
-    least = rotation_between(parent.rotations @ here, towards) @ parent.rotations
-    bent = flexion_normals_of(normals, flexed)
-    local = (np.swapaxes(least, 1, 2) @ bent[..., None])[..., 0]
-    if np.isfinite(local).all(axis=1).sum() >= 5:
-        body.borrow = beside(unit(np.nanmean(local, axis=0)), here)
-    poses = no_poses(len(own))
-    aim(
-        body,
-        own,
-        centre,
-        Poses(parent.rotations, parent.shifts, poses.flags),
-        normals,
-        flexed,
-        poses,
-    )
-    body.rotations, body.shifts = poses.rotations, poses.shifts
-    if body.borrow is not None:
-        # off the line after all, if only by a little: seen where the twist is known
-        lent = poses.flags == PoseFlag.TWIST_BORROWED
-        local = into_frame(poses.rotations[lent], poses.shifts[lent], own[lent])
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # a marker never seen with the twist
-            mean = np.nanmean(local, axis=0)
-        body.shape = np.where(np.isfinite(mean), mean, shape)
-    return body
-
-
-def next_normals(
-    limb: str, towards: Array, end: Array, tree: Tree, sample: dict[str, Array]
-) -> Array:
-    """Return ``cross`` of the directions of a limb and the one limb beyond it, (n, 3).
-
-    Parameters
-    ----------
-    towards : (n, 3)
-        Unit direction of the limb, in the world.
-    end : (n, 3) m
-        Its far end.
-
-    Returns
-    -------
-    (n, 3)
-        As long as the sine of the flexion, towards the body's right where the joint's name tells;
-        NaN where unknown.
-    """
-    beyond = tree.children(limb)
-    if len(beyond) != 1:
-        return np.full(towards.shape, np.nan)
-    sign = hinge_sign(next(j for j in tree.joints if j.child == beyond[0]))
-    lower = cloud(tree.markers[beyond[0]], sample).mean(axis=1) - end
-    normals: Array = (sign or 1.0) * np.cross(towards, unit(lower))
-    return normals
-
-
-def flexion_normals_of(normals: Array, flexed: float) -> Array:
-    """Return normals whose length is at least the sine of ``flexed``, NaN for the others."""
-    enough = np.linalg.norm(normals, axis=1) > np.sin(flexed)
-    return np.where(enough[:, None], normals, np.nan)
-
-
-def hinge_sign(joint: JointModel) -> float | None:
-    """Return which way the joint's flexion axis points, +1 for right; None if nobody knows."""
-    return next((sign for part, sign in HINGE_SIGN.items() if joint.name.endswith(part)), None)
-
-
-def _find_axes(
-    body: Body,
-    parent: Body | None,
-    tree: Tree,
-    model: TopologicalModel,
-    sample: dict[str, Array],
-    settings: SkeletonSettings,
-) -> None:
-    """Find the limb's right and up, in place."""
-    own = cloud(body.labels, sample)
-    pairs = right_from_pairs(body, model)
-    if pairs is not None or parent is None:
-        # pelvis, trunk, head: up is the body's
-        rest = [
-            label
-            for limb in tree.limbs
-            if limb in ("head", "trunk")
-            for label in tree.markers[limb]
-        ]
-        feet = [
-            label
-            for limb in tree.limbs
-            if "foot" in limb or "shank" in limb
-            for label in tree.markers[limb]
-        ]
-        ends = [
-            np.nanmean(cloud(tuple(labels), sample), axis=1) if labels else np.nanmean(own, axis=1)
-            for labels in (rest, feet)
-        ]
-        if body.name != "pelvis":
-            ends[1] = np.nanmean(cloud(tree.markers[tree.root], sample), axis=1)
-        body.up = up_of_trunk(
-            body, ends[0] - np.nanmean(own, axis=1) if rest else own[:, 0] * 0 + [0, 1, 0]
-        )
-        body.right = pairs
-        if pairs is not None:
-            body.up = beside(body.up, pairs)
-        return
-    assert body.centre is not None
-    arms = body.shape - body.centre
-    far = int(np.linalg.norm(arms, axis=1).argmax())
-    long = unit(arms[far])
-    body.up = -long
-    right = right_from_parent(body, parent)
-    for joint in tree.joints:
-        sign = hinge_sign(joint) if joint.parent == body.name else None
-        if sign is None:
-            continue
-        centre = out_of_frame(body.rotations, body.shifts, body.centre[None])[:, 0]
-        lower = cloud(tree.markers[joint.child], sample).mean(axis=1) - own[:, far]
-        hinge = right_from_hinge(body, own[:, far] - centre, lower, np.deg2rad(settings.flexed_deg))
-        right = sign * hinge if hinge is not None else right
-    if body.twist_open and body.borrow is not None:
-        right = body.borrow
-    body.right = None if right is None else beside(right, long)
 
 
 def _known(point: Array | None) -> Array:

@@ -8,12 +8,12 @@ from kinesphere.geometry.rotations import mean_rotation, rotation_log
 ONE_AXIS_SHARE = 0.05
 """A hinge's second-widest rotation has less than this share of the widest one's variance."""
 ONE_AXIS_RATIO = 0.2
-"""Least over second-least singular value of SARA's equations: below it the two limbs share a line."""
+"""Least over second-least singular value of SARA's equations: below it the limbs share a line."""
 MIN_RANGE = np.deg2rad(20.0)
 """rad, rms rotation about the widest axis below which nothing is said."""
 
 
-def count_axes(rotations: Array, shifts: Array) -> int | None:
+def count_axes(rotations: Array) -> int | None:
     """Return 1 for a hinge, 2 for anything freer, None where the motion is too small to tell.
 
     A hinge turns about one direction (eigenvalues of the rotation vectors' covariance) *and* leaves
@@ -21,15 +21,14 @@ def count_axes(rotations: Array, shifts: Array) -> int | None:
 
     Parameters
     ----------
-    rotations, shifts : (n_frames, 3, 3), (n_frames, 3) m
+    rotations : (n_frames, 3, 3)
         ``parent_from_child``; frames with NaN take no part.
 
     References
     ----------
     .. [1] Ehrig et al. (2007), J. Biomech. 40(10), 2150-2157, doi:10.1016/j.jbiomech.2006.10.026.
     """
-    known = np.isfinite(rotations).all(axis=(1, 2)) & np.isfinite(shifts).all(axis=1)
-    r, t = rotations[known], shifts[known]
+    r = rotations[np.isfinite(rotations).all(axis=(1, 2))]
     if len(r) < 10:
         return None
     turns = rotation_log(mean_rotation(r).T @ r)

@@ -12,7 +12,8 @@ from kinesphere.data import (
     settings_as_json,
 )
 from kinesphere.errors import BadRecording
-from kinesphere.skeleton.chain import cloud, measure_chain
+from kinesphere.skeleton.chain import measure_chain
+from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.report import describe_joint, describe_limb
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.settings import SkeletonSettings
@@ -28,10 +29,10 @@ def fit_skeleton(
     """Measure limbs and joint centres from labelled markers, and the pose of every limb.
 
     From the root outward every limb gets a reference shape of its markers and the joint it shares
-    with its parent; where the motion does not tell the joint's centre, the model's landmarks do, and
-    the joint's note says so. A limb that owns too few markers for a pose of its own takes the joint
-    centre as one more point; where even its twist stays open, the next limb lends it while the joint
-    between is flexed, else it is the least from rest and flagged.
+    with its parent; where the motion does not tell the joint's centre, the model's landmarks do,
+    and the joint's note says so. A limb that owns too few markers for a pose of its own takes the
+    joint centre as one more point; where even its twist stays open, the next limb lends it while
+    the joint between is flexed, else it is the least from rest and flagged.
 
     Parameters
     ----------
@@ -74,7 +75,7 @@ def fit_skeleton(
         warnings=tree.warnings,
         version=kinesphere.__version__,
     )
-    limbs = tuple(describe_limb(tree, bodies[limb], joints) for limb in tree.limbs)
+    limbs = tuple(describe_limb(bodies[limb], joints) for limb in tree.limbs)
     history = (*recording.history, step)
     return Motion(
         skeleton=Skeleton(limbs, tuple(described[limb] for limb in tree.limbs[1:]), history),

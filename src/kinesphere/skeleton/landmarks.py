@@ -4,11 +4,12 @@ import numpy as np
 
 from kinesphere.data import Array, JointModel, Landmark
 from kinesphere.geometry.rigid import into_frame
+from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import beside
 
 NO_LANDMARK_SHARE = 0.25
-"""Without a landmark the centre is expected between the two limbs, to this share of their distance."""
+"""Without a landmark the centre is expected midway between the limbs, to this share of the way."""
 
 
 def expected_centre(
@@ -33,10 +34,10 @@ def expected_centre(
         if found := _landmark(landmark, joint, parent, sample):
             return *found, landmark.source or "landmark"
     cloud = np.stack([sample[label] for label in child_labels], axis=1)
-    child = np.nanmedian(
-        np.nanmean(into_frame(parent.rotations, parent.shifts, cloud), axis=1), axis=0
-    )
+    child = median_seen(mean_seen(into_frame(parent.rotations, parent.shifts, cloud), axis=1))
     own = parent.shape.mean(axis=0)
+    if not np.isfinite(child).all():
+        child = own
     spread = max(NO_LANDMARK_SHARE * float(np.linalg.norm(child - own)), 0.02)
     return (child + own) / 2, spread, "between the markers of both limbs"
 
@@ -51,14 +52,14 @@ def _landmark(
     local = into_frame(parent.rotations, parent.shifts, world[:, None])[:, 0]
     if not np.isfinite(local).all(axis=1).any():
         return None
-    centre = np.nanmedian(local, axis=0)
+    centre = median_seen(local)
     if landmark.scale is None or not (landmark.inward or landmark.down or landmark.forward):
         return centre, landmark.spread
     a, b = landmark.scale
     apart = np.linalg.norm(sample[a] - sample[b], axis=1)
     if not np.isfinite(apart).any() or parent.up is None:
         return None
-    size = float(np.nanmedian(apart))
+    size = float(median_seen(apart))
     up = parent.up
     spread = landmark.spread
     if parent.right is None:

@@ -8,7 +8,6 @@ import numpy as np
 
 from kinesphere.data import Array, JointModel, Recording, Segment, TopologicalModel
 from kinesphere.errors import BadModel
-from kinesphere.geometry.rigid import into_frame
 from kinesphere.skeleton.degrees import count_axes
 from kinesphere.skeleton.naming import joint_name, mirror_pairs
 from kinesphere.skeleton.sampling import spread_frames
@@ -27,8 +26,8 @@ def learn_model(
 ) -> TopologicalModel:
     """Learn a topological model from labelled recordings.
 
-    With ``segments`` the joints come from the motion; with ``model`` (a built-in one, say) limbs and
-    joints are its own, and the recordings add the distances that labelling compares with.
+    With ``segments`` the joints come from the motion; with ``model`` (a built-in one, say) limbs
+    and joints are its own, and the recordings add the distances that labelling compares with.
 
     Parameters
     ----------
@@ -44,8 +43,8 @@ def learn_model(
     Raises
     ------
     BadModel
-        If neither segments nor a model are given, a label is in no recording, no recording is given,
-        or a limb was never seen together with any other.
+        If neither segments nor a model are given, a label is in no recording, no recording is
+        given, or a limb was never seen together with any other.
     """
     if not recordings:
         raise BadModel(f"model {name}: no recording to learn from; one at least is needed")
@@ -87,8 +86,7 @@ def _from_segments(
             costs[a, b].append(cost)
             if a in poses and b in poses:
                 relative = np.swapaxes(poses[a].rotations, 1, 2) @ poses[b].rotations
-                shifts = into_frame(poses[a].rotations, poses[a].shifts, poses[b].shifts[:, None])
-                if found := count_axes(relative, shifts[:, 0]):
+                if found := count_axes(relative):
                     axes[a, b].append(found)
     mean = {pair: float(np.mean(c)) if c else np.inf for pair, c in costs.items()}
     edges = spanning_tree(limbs, mean)
@@ -100,7 +98,7 @@ def _from_segments(
             "with another one"
         )
     root = _root(kept, edges)
-    joints = []
+    joints: list[JointModel] = []
     for parent, child in _outward(root, edges):
         pair = (parent, child) if (parent, child) in axes else (child, parent)
         # one recording without the movement does not make a hinge of a ball joint

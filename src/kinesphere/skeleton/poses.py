@@ -115,6 +115,7 @@ def aim(
     flexed
         rad, angle between them from which the twist is borrowed.
     """
+    assert body.centre is not None  # only the root has none, and it is never aimed
     arms = body.shape - body.centre
     order = np.argsort(-np.linalg.norm(arms, axis=1))
     for m in order:  # the farthest marker that is seen tells the direction best

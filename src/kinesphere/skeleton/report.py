@@ -9,7 +9,6 @@ from kinesphere.skeleton.body_axes import unit
 from kinesphere.skeleton.chain import MeasuredJoint
 from kinesphere.skeleton.poses import Poses
 from kinesphere.skeleton.settings import SkeletonSettings
-from kinesphere.skeleton.tree import Tree
 
 VERDICT_NOISE = 5e-4
 """m, least noise the verdict on a centre reckons with: no recording is better than that."""
@@ -85,12 +84,12 @@ def _verdict(
     return "determined", f"range of motion {degrees:.0f}°"
 
 
-def describe_limb(tree: Tree, body: Body, joints: dict[str, MeasuredJoint]) -> Limb:
+def describe_limb(body: Body, joints: dict[str, MeasuredJoint]) -> Limb:
     """Return the limb with its markers, and its length and long axis from joint to far end.
 
-    The far end is the next joint; the middle of the next joints where there are several, the neck of
-    a trunk that has one; the farthest marker where there is none. Of a root it goes from the middle
-    of the joints below to the joint above, in the sense of ``body.up``.
+    The far end is the next joint; the middle of the next joints where there are several, the neck
+    of a trunk that has one; the farthest marker where there is none. Of a root it goes from the
+    middle of the joints below to the joint above, in the sense of ``body.up``.
     """
     ends = {
         joint.model.child: joint.fit.centre

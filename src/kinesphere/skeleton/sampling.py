@@ -28,7 +28,7 @@ def spread_frames(markers: Array, count: int) -> NDArray[np.intp]:
     n_frames = len(markers)
     if n_frames <= count:
         return np.arange(n_frames)
-    known = np.isfinite(markers).all(axis=2)
+    known = np.asarray(np.isfinite(markers).all(axis=2))
     steps = np.diff(np.where(known[..., None], markers, 0.0), axis=0)
     both = known[1:] & known[:-1]
     seen = np.maximum(both.sum(axis=1), 1)

@@ -42,7 +42,7 @@ class SkeletonSettings:
     )
     hinge: float = setting(
         10.0,
-        "how many times tighter a landmark holds the centre of a joint with one axis along that axis",
+        "how many times tighter a landmark holds a hinge's centre along its axis than across",
         low=1.0,
         high=1000.0,
         source="on 41-marker recordings elbows and knees end up at the lateral marker without it",

@@ -6,8 +6,9 @@ from kinesphere.data import Array, PoseFlag
 from kinesphere.geometry.rigid import out_of_frame
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import unit
-from kinesphere.skeleton.chain import MeasuredJoint, cloud, next_normals
-from kinesphere.skeleton.poses import Neighbour, Poses, aim, bridge, fit_poses
+from kinesphere.skeleton.chain import MeasuredJoint
+from kinesphere.skeleton.neighbours import cloud, next_normals
+from kinesphere.skeleton.poses import Neighbour, Poses, aim, bridge, fit_poses, no_poses
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree
 
@@ -51,13 +52,11 @@ def solve_poses(
             if child in alone and (alone[child].flags != PoseFlag.UNSEEN).any()
         )
         near = () if centre is None else (Neighbour(_centre(body), centre, body.centre_noise),)
+        longest = int(settings.fill_gap_s * rate)
         if body.twist_open:
-            poses[limb] = alone_poses = _unseen(len(own[limb]))
-            del alone_poses
+            poses[limb] = no_poses(len(own[limb]))
         else:
             poses[limb] = fit_poses(body, own[limb], near, helpers, min_spread)
-        longest = int(settings.fill_gap_s * rate)
-        if not body.twist_open:
             bridge(poses[limb], body, parent, centre, longest)
         if parent is not None and centre is not None:
             flexed = np.deg2rad(settings.flexed_deg)
@@ -78,12 +77,6 @@ def residuals(body: Body, own: Array, poses: Poses) -> Array:
     with np.errstate(invalid="ignore", divide="ignore"):
         rms: Array = np.sqrt(np.where(known, off, 0.0).sum(axis=1) / count)
     return np.where(count > 0, rms, np.nan)
-
-
-def _unseen(n_frames: int) -> Poses:
-    from kinesphere.skeleton.poses import no_poses
-
-    return no_poses(n_frames)
 
 
 def _centre(body: Body) -> Array:

@@ -9,12 +9,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.geometry.centres import score_centre, sphere_centre
+from kinesphere.geometry.algebraic_centres import score_centre, sphere_centre
 from kinesphere.geometry.rigid import RigidFit, into_frame
 from kinesphere.skeleton.body import measure_shape
 
 NEARNESS = 0.05
-"""Cost in m of a metre between a joint and the nearest markers: a joint is where limbs are close."""
+"""Cost in m of each metre between a joint and the nearest markers: limbs meet where they are."""
 OUTLIER = 0.003
 """m, residual at which a sighting within its limb starts to be doubted."""
 MIN_SPREAD = 0.005
@@ -37,11 +37,11 @@ def limb_poses(clouds: Mapping[str, Array]) -> dict[str, RigidFit]:
 
 
 def joint_cost(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit | None) -> float:
-    """Return how badly two limbs look like neighbours, in m; infinite if they were never seen together.
+    """Return how badly two limbs look like neighbours, in m; infinite if never seen together.
 
     The better of two views: how far apart the joint's two images are (SCoRE where both limbs have
-    poses, spheres about a common centre where one has), and how steady one marker's distances to the
-    other limb are (an acromion near an upper arm). Either grows with the way to the nearest marker.
+    poses, spheres about a common centre where one has), and how steady one marker's distances to
+    the other limb are (an acromion near an upper arm). Both grow with the way to the markers.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def _nearest(points: Array, centre: Array) -> float:
 
 
 def _distance_cost(a: Array, b: Array) -> float:
-    """Return the steadiest marker of ``a``: mean deviation of its distances to ``b``, plus nearness."""
+    """Return how unsteady and long the distances to ``b`` are, for the best marker of ``a``."""
     best = np.inf
     for m in range(a.shape[1]):
         distance = np.linalg.norm(b - a[:, m : m + 1], axis=2)

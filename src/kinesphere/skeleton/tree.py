@@ -1,6 +1,8 @@
-"""What of a model is there to be measured: limbs with markers in the recording, and what they carry."""
+"""What of a model is there to be measured: limbs with markers in the recording."""
 
 from dataclasses import dataclass
+
+import numpy as np
 
 from kinesphere.data import JointModel, Recording, TopologicalModel
 from kinesphere.errors import BadRecording
@@ -40,17 +42,17 @@ def find_tree(recording: Recording, model: TopologicalModel) -> Tree:
     BadRecording
         If the root has fewer than three markers.
     """
-    ever = recording.seen.any(axis=0)
+    ever = np.asarray(recording.seen.any(axis=0))
     there = {label for label, once in zip(recording.labels, ever, strict=True) if once}
     markers = {
         segment.name: tuple(label for label in segment.markers if label in there)
         for segment in model.segments
     }
     if len(markers[model.root]) < 3:
-        wanted = model.segment(model.root).markers
+        needed = model.segment(model.root).markers
         raise BadRecording(
             f"the root {model.root} of model {model.name} needs at least three of the markers "
-            f"{', '.join(wanted)}; the recording shows {', '.join(markers[model.root]) or 'none'}"
+            f"{', '.join(needed)}; the recording shows {', '.join(markers[model.root]) or 'none'}"
         )
     kept, warnings = {model.root}, []
     joints = []
