@@ -45,6 +45,7 @@ def odd_parameters(performance, rng):
         root_rotations=Rotation.random(n, rng=rng).as_matrix(),
         angles=angles,
         twists=rng.uniform(-np.pi, np.pi, angles.shape[:2]),
+        residuals=rng.random(angles.shape[:2]) * 0.02,
     )
 
 

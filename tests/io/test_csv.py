@@ -133,6 +133,13 @@ def test_the_columns_are_those_of_the_documents(performance, tmp_path):
     assert values["left_shoulder.flag"] == str(parameters.flags[0, shoulder])
 
 
+def test_quaternions_have_one_sign(odd_parameters, tmp_path):
+    write_parameters(odd_parameters, tmp_path / "parameters.csv")
+    head, *rows = (tmp_path / "parameters.csv").read_text().splitlines()
+    at = head.split(",").index("root.qw")
+    assert min(float(row.split(",")[at]) for row in rows) >= 0
+
+
 def test_columns_may_stand_in_any_order_with_others_among_them(performance, tmp_path):
     truth = performance.parameters
     path = tmp_path / "parameters.csv"

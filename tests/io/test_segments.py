@@ -74,6 +74,7 @@ def test_a_simple_mapping(segments_of, text):
         ("hand_l", "left_hand"),
         ("femur_r", "right_thigh"),
         ("tibia_l", "left_shank"),
+        ("fibula_r", "right_shank"),
         ("calcn_r", "right_foot"),
         ("talus_l", "left_foot"),
         ("toes_r", "right_foot"),

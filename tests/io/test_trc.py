@@ -186,6 +186,11 @@ def test_missing_rows_are_frames_not_seen(read_text):
     assert "1 frames are missing" in warnings_of(recording)
 
 
+def test_missing_rows_do_not_slow_the_clock(read_text):
+    text = PLAIN.replace("50.00", "0").replace("3\t0.04\t1002\t2002\t3002\t6\t7\t8\n", "")
+    assert read_text(text).rate == 50.0
+
+
 def test_decimated_frames_count_in_steps(read_text):
     rows = "".join(f"{n}\t{n / 1200:.5f}\t1\t2\t3\t4\t5\t6\n" for n in (11, 21, 31, 41))
     recording = read_text(HEAD + rows)

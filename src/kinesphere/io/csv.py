@@ -112,7 +112,7 @@ def rate_of(table: NamedColumns, path: Path) -> tuple[float, tuple[str, ...]]:
     times = table.values[:, 0]
     if len(times) == 1:
         return 1.0, ("one frame tells no frame rate; 1 Hz is taken",)
-    rate = rate_from_times(times, TIME_SLACK)
+    rate = rate_from_times(times, len(times) - 1, TIME_SLACK)
     if rate is None:
         raise UnreadableFile(f"{path}: time_s does not rise from line {table.lines[0]} to the last")
     uneven = np.abs(times - times[0] - np.arange(len(times)) / rate)

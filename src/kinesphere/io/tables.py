@@ -83,30 +83,31 @@ def format_rows(
     return "".join(f"{row}\n" for row in rows).replace("nan", gap)
 
 
-def rate_from_times(times: Array, slack: float) -> float | None:
+def rate_from_times(times: Array, n_steps: int, slack: float) -> float | None:
     """Return the roundest rate in Hz that evenly spaced times allow, or None.
 
     Parameters
     ----------
     times : (n_frames,) s
         As printed, each rounded by up to ``slack`` / 2.
+    n_steps
+        How many frames lie from the first time to the last.
     slack
         s, by how much first and last may be wrong together.
 
     Returns
     -------
     float or None
-        None where fewer than two times are known or they do not rise.
+        None where first or last time is unknown, or they do not rise.
     """
-    n = len(times) - 1
-    span = float(times[-1] - times[0]) if n > 0 else 0.0
+    span = float(times[-1] - times[0])
     if not span > slack:
         return None
     for decimals in range(9):
-        rate = round(n / span, decimals)
-        if rate > 0 and abs(n / rate - span) <= slack:
+        rate = round(n_steps / span, decimals)
+        if rate > 0 and abs(n_steps / rate - span) <= slack:
             return rate
-    return n / span
+    return n_steps / span
 
 
 def _fitted(

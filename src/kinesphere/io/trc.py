@@ -242,10 +242,9 @@ def _rate(
     except ValueError:
         rate = np.nan
     known = rate > 0 and np.isfinite(rate)
-    by_times = rate_from_times(times, TIME_SLACK)
+    n, span = int(rows[-1]), float(times[-1] - times[0])
+    by_times = rate_from_times(times, n, TIME_SLACK)
     if by_times is not None:
-        by_times *= rows[-1] / (len(rows) - 1)  # frames may be missing
-        span, n = float(times[-1] - times[0]), int(rows[-1])
         if not known or abs(span - n / rate) > TIME_SLACK + RATE_SLACK * n / rate:
             warnings.append(
                 f"the header's data rate is {told or 'missing'}, the time column says "
