@@ -244,13 +244,14 @@ def _rate(
     known = rate > 0 and np.isfinite(rate)
     n, span = int(rows[-1]), float(times[-1] - times[0])
     by_times = rate_from_times(times, n, TIME_SLACK)
-    if by_times is not None:
-        if not known or abs(span - n / rate) > TIME_SLACK + RATE_SLACK * n / rate:
-            warnings.append(
-                f"the header's data rate is {told or 'missing'}, the time column says "
-                f"{by_times:g} Hz; the time column counts"
-            )
-            rate, known = by_times, True
+    if by_times is not None and (
+        not known or abs(span - n / rate) > TIME_SLACK + RATE_SLACK * n / rate
+    ):
+        warnings.append(
+            f"the header's data rate is {told or 'missing'}, the time column says "
+            f"{by_times:g} Hz; the time column counts"
+        )
+        rate, known = by_times, True
     if not known:
         raise UnreadableFile(
             f"{path}: line 3 gives {told!r} for DataRate and the time column does not help; "
