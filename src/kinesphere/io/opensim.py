@@ -67,7 +67,7 @@ def write_osim(skeleton: Skeleton, path: str | Path) -> None:
 def _add_body(bodies: Element, limb: Limb) -> None:
     body = _body(bodies, opensim_name(limb.name), NOMINAL_MASS, NOMINAL_INERTIA)
     shown = SubElement(
-        SubElement(body, "attached_geometry"), "Ellipsoid", name=f"{limb.name}_shape"
+        SubElement(body, "attached_geometry"), "Ellipsoid", name=f"{opensim_name(limb.name)}_shape"
     )
     _text(shown, "socket_frame", "..")
     length = limb.length if limb.length > 0 else _UNKNOWN_LENGTH
