@@ -70,7 +70,7 @@ def test_parameters_to_poses_and_back(seed):
     assert_allclose(again.origins, motion.origins, atol=1e-7)
 
 
-@settings(deadline=None, max_examples=3)
+@settings(deadline=None, max_examples=2)
 @given(seed=SEEDS)
 def test_where_the_world_is_does_not_matter(seed):
     rng = np.random.default_rng(seed)

@@ -107,5 +107,5 @@ def test_settings_are_addressed_by_group_and_key():
 def test_wrong_settings_say_what_would_be_right():
     with pytest.raises(BadSetting, match="known are phase-log-pca"):
         AxesSettings(method="magic")
-    with pytest.raises(BadSetting, match="slowest is 50"):
-        FilterSettings(slowest=50.0)
+    with pytest.raises(BadSetting, match="slowest is 70"):
+        FilterSettings(slowest=70.0)

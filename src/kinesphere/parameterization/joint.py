@@ -33,7 +33,7 @@ from kinesphere.parameterization.settings import (
     parse_counts,
 )
 
-TRIAL_FRAMES = 2000  # enough to tell which order of axes serves better
+TRIAL_FRAMES = 600  # enough to tell which order of axes serves better
 CLEARLY = 0.5  # another order must lower the twist at least to this share to be taken: where
 # limbs really twist, the wrong order of axes lowers it to 0.65 now and then
 

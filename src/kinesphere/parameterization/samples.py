@@ -7,6 +7,7 @@ from scipy.signal import butter, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array, Mask
+from kinesphere.geometry.rotations import rotation_angle
 
 Phase = tuple[int, int]
 """First frame and the frame after the last of a run."""
@@ -39,9 +40,33 @@ def runs(mask: Mask) -> tuple[Phase, ...]:
     return tuple((int(a), int(b)) for a, b in zip(starts, stops, strict=True))
 
 
+SPIKE = np.deg2rad(700.0)  # rad/s there and back within a frame: no limb does that
+SPIKE_RATIO = 5.0  # times the step from the frame before to the frame after
+
+
+def without_spikes(rotations: Array, rate: float) -> Array:
+    """Return rotations, (n, 3, 3), with single frames that jump away and back taken as before.
+
+    A swapped or misplaced marker makes such frames; a low-pass would smear them over a movement's
+    length. Only what axes are found from is mended so, never the delivered angles.
+    """
+    if len(rotations) < 3:
+        return rotations
+    before = rotation_angle(np.swapaxes(rotations[:-1], -1, -2) @ rotations[1:])
+    across = rotation_angle(np.swapaxes(rotations[:-2], -1, -2) @ rotations[2:])
+    away, back = before[:-1], before[1:]
+    with np.errstate(invalid="ignore"):
+        spike = np.minimum(away, back) > np.maximum(SPIKE / rate, SPIKE_RATIO * across)
+    mended = rotations.copy()
+    at = np.flatnonzero(spike) + 1
+    mended[at] = rotations[at - 1]
+    return mended
+
+
 def smooth_rotations(rotations: Array, rate: float, cutoff: float) -> Array:
     """Low-pass rotations with a second-order Butterworth filter run both ways (zero phase).
 
+    Frames that jump away and back are mended first, see `without_spikes`.
     Quaternions of one sign are filtered component by component and normalized, which agrees with
     filtering matrices and projecting them to third order in the angle within the filter's memory.
 
@@ -60,6 +85,7 @@ def smooth_rotations(rotations: Array, rate: float, cutoff: float) -> Array:
     if not 0 < cutoff < 0.45 * rate:
         return rotations
     sos = butter(2, cutoff, fs=rate, output="sos")
+    rotations = without_spikes(rotations, rate)
     smooth = rotations.copy()
     for start, stop in runs(np.asarray(np.isfinite(rotations).all(axis=(1, 2)))):
         if stop - start < 4:

@@ -38,7 +38,7 @@ class FilterSettings:
         4.0, "lowest threshold speed of 'bounded-valley'", unit="deg/s", low=0.0, high=1000.0
     )
     fastest: float = setting(
-        40.0, "highest threshold speed of 'bounded-valley'", unit="deg/s", low=0.0, high=1000.0
+        60.0, "highest threshold speed of 'bounded-valley'", unit="deg/s", low=0.0, high=1000.0
     )
     fallback: float = setting(
         12.6,
@@ -46,7 +46,7 @@ class FilterSettings:
         unit="deg/s",
         low=0.0,
         high=1000.0,
-        source="middle of 4 and 40 deg/s on a logarithmic scale",
+        source="middle of 4 and 40 deg/s on a logarithmic scale; measured on real recordings",
     )
     bridge: float = setting(
         0.24, "shorter rests inside a movement belong to it (not by 'paper')", unit="s", low=0.0
