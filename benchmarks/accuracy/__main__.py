@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 def main() -> int:
     """Run every trial and write ``accuracy.json`` and ``accuracy.md``."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=5, help="actors a condition")
+    parser.add_argument("--seeds", type=int, default=3, help="actors a condition")
     parser.add_argument("--condition", action="append", help="only this one; nothing is written")
     arguments = parser.parse_args()
     chosen = tuple(
