@@ -26,15 +26,16 @@ def measure_line(
     labels = tree.markers[joint.child]
     own = cloud(labels, sample)
     arms = own - centre[:, None]
-    lengths = median_seen(np.linalg.norm(arms, axis=2))
-    far = int(np.nanargmax(lengths))
+    far = int(np.nanargmax(median_seen(np.linalg.norm(arms, axis=2))))
     towards = unit(arms[:, far])
     by_parent = (np.swapaxes(parent.rotations, 1, 2) @ towards[..., None])[..., 0]
     here = unit(mean_seen(by_parent))
     if not np.isfinite(here).all():
         here = np.array([0.0, -1.0, 0.0])
+    along = np.einsum("fmi,fi->fm", arms, towards)  # signed: a heel lies behind its ankle
+    lengths = median_seen(along)
     shape = lengths[:, None] * here
-    off = np.abs(np.linalg.norm(arms, axis=2) - lengths)
+    off = np.abs(along - lengths)
     body = Body(joint.child, joint.parent, labels, shape, robust_rms(off), np.zeros(3))
     body.twist_open = True
     flexed = np.deg2rad(settings.flexed_deg)
