@@ -184,6 +184,8 @@ def test_what_a_c3d_file_needs_to_be_written_back_survives(solution, tmp_path):
     write(replace(solution, recording=recording), tmp_path / "out")
     restored = read_solution(tmp_path / "out").recording
     assert_same(recording, restored, "recording")
+    before, after = (r.details["c3d"].layout.section for r in (recording, restored))
+    assert [group.name for group in after.groups] == [group.name for group in before.groups]
     write_c3d(restored, tmp_path / "again.c3d")
     assert_same(
         replace(recording, history=()),
