@@ -104,10 +104,11 @@ def test_integers_stay_integers_while_they_can(c3d_file, tmp_path, processor):
     after = rewritten(before, tmp_path)
     assert after.history[0].findings["encoding"] == "INTEL integer"
     assert_array_equal(source(before).frames.points, source(after).frames.points)
-    moved = replace(before, markers=before.markers + 0.1e-3)
-    after = rewritten(moved, tmp_path)
-    assert after.history[0].findings["encoding"] == "INTEL real"
-    assert_allclose(after.markers, moved.markers, rtol=SINGLE)
+    for beyond in (0.1e-3, 10 * 0.3e-3):  # between two steps; past the largest number of steps
+        moved = replace(before, markers=before.markers + beyond)
+        after = rewritten(moved, tmp_path)
+        assert after.history[0].findings["encoding"] == "INTEL real"
+        assert_allclose(after.markers, moved.markers, rtol=SINGLE)
 
 
 def test_everything_a_recording_of_our_own_holds_comes_back(recording, tmp_path):
@@ -203,6 +204,42 @@ def test_markers_in_another_order_go_back_to_their_places(rich, tmp_path):
     assert after.labels == before.labels
     assert_array_equal(after.markers, before.markers)
     assert_array_equal(source(after).frames.fourth, source(before).frames.fourth)
+
+
+def test_a_marker_whose_place_is_taken_is_a_new_one(rich, tmp_path):
+    before = read_c3d(rich)
+    after = rewritten(replace(before, labels=("B", "X", "A_2")), tmp_path)
+    section = source(after).layout.section
+    assert section.texts("POINT", "LABELS") == ("B", "A", "X", "spare")
+    assert section.texts("POINT", "DESCRIPTIONS") == ("second", "third", "")
+
+
+def test_frames_at_another_rate_are_others_and_take_no_masks(rich, tmp_path):
+    before = read_c3d(rich)
+    after = rewritten(replace(before, rate=50.0, analog=None), tmp_path)
+    assert after.rate == 50.0
+    assert_array_equal(source(after).frames.fourth[:2], [[3, -1, 0], [0, 2, 0]])
+
+
+@pytest.mark.parametrize("padded", [True, False])
+def test_what_ends_on_no_block_is_given_none(c3d_file, tmp_path, padded):
+    path = c3d_file(first=0, padded=padded)
+    write_c3d(read_c3d(path), tmp_path / "written.c3d")
+    assert (tmp_path / "written.c3d").stat().st_size == path.stat().st_size
+    with (tmp_path / "written.c3d").open("rb") as file, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        assert len(list(c3d.Reader(file).read_frames())) == (2 if padded else 1)  # of truly one
+
+
+def test_parameters_that_were_missing_find_room_before_the_data(c3d_file, tmp_path):
+    for filling in range(0, 512, 16):
+        missing = {"DATA_START": None, "SCALE": None, "RATE": None}
+        groups = {
+            "POINT": missing,
+            "ODD": {"LESS": "x" * min(filling, 255), "MORE": "x" * max(0, filling - 255)},
+        }
+        before = read_c3d(c3d_file(groups=groups))
+        assert_array_equal(rewritten(before, tmp_path).markers, before.markers)
 
 
 def test_a_prefix_taken_away_is_no_longer_announced(c3d_file, tmp_path):

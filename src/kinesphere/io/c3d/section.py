@@ -19,6 +19,7 @@ from kinesphere.io.c3d.processor import INTEL, Processor
 PARAMETER_KEY = b"\x01\x50"
 _NAMES = "latin-1"
 """Names are ASCII; whatever bytes a description holds go back as they came."""
+_MOST_GROUPS = 127
 _LARGEST_RECORD = 65535
 """Bytes: the way to the next record has 16 bits."""
 
@@ -42,6 +43,8 @@ def section_from_bytes(content: bytes, processor: Processor) -> Section:
         number = int.from_bytes(content[at + 1 : at + 2], signed=True)
         if name_length == 0 or number == 0:
             break
+        if number < -_MOST_GROUPS:
+            raise UnreadableFile(f"a group has the number {-number}; at most {_MOST_GROUPS} can be")
         locked, start = name_length < 0, at + 2
         record = _Record(content, start, f"record at byte {at} of the parameter section")
         name = record.take(abs(name_length)).decode(_NAMES).strip(" \0")
