@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
 from kinesphere.errors import BadModel, BadRecording, BadSetting, UnreadableFile
+from kinesphere.io import read
 from kinesphere.pipeline import (
     STAGES,
     Settings,
@@ -23,6 +24,7 @@ from kinesphere.pipeline import (
     stage_settings,
 )
 from kinesphere.pipeline.values import type_as_text, value_from
+from kinesphere.report import rms
 from kinesphere.synthetic import make_performance
 
 EVERY = [
@@ -258,3 +260,61 @@ def test_values_of_another_type_are_refused(written, annotation):
 @trials(deadline=None, max_examples=50)
 def test_numbers_survive_being_written_as_text(number):
     assert value_from(repr(number), float, "stage.key") == number
+
+
+# --- real recordings ---
+
+FULL_BODY = [
+    "cmu41/06_01.c3d",
+    "cmu41/02_05.c3d",
+    "cmu41/85_02.c3d",
+    "cmu41/135_02.c3d",
+    "plugin-gait/PiG_Calibration-FlatFoot-Full.c3d",
+    "plugin-gait/PiG_Motion-FlatFoot-Full.c3d",
+    "plugin-gait/pycgm_static.c3d",
+    "plugin-gait/pycgm_movement.c3d",
+    "functional/anatomical_posture.c3d",
+    "functional/Test_func_lhip.c3d",
+    "functional/Test_func_lknee.c3d",
+    "functional/Test_func_trunk.c3d",
+]
+RIGID = 0.02  # m; trunks bend, everything else is far better
+SIDES = 0.08  # of the mean length of the two sides
+FLEXED = np.deg2rad(40)  # beyond it a knee or an elbow shows which way it bends
+
+
+def flexion(solution, parent, child):
+    """Return how a limb hangs from its parent where the joint is flexed, (n, 3) in the parent."""
+    motion, names = solution.motion, solution.skeleton.limb_names
+    above, below = names.index(parent), names.index(child)
+    limbs = solution.skeleton.limbs
+    lower = motion.rotations[:, below] @ limbs[below].long_axis
+    lower = np.einsum("fji,fj->fi", motion.rotations[:, above], lower)
+    off = np.arccos(np.clip(lower @ limbs[above].long_axis, -1, 1))
+    return lower[off > FLEXED]
+
+
+@pytest.mark.real
+@pytest.mark.slow
+@pytest.mark.parametrize("file", FULL_BODY)
+def test_real_recordings_are_solved_and_bend_as_people_do(file, recordings):
+    solution = solve(read(recordings / file))
+    motion = solution.motion
+    assert solution.model_name == ("cmu41" if file.startswith("cmu41") else "plugin-gait")
+    assert rms(motion.residuals) < RIGID
+    assert motion.seen.mean() > 0.95
+    for side in ("left", "right"):
+        knee = flexion(solution, f"{side}_thigh", f"{side}_shank")
+        elbow = flexion(solution, f"{side}_upper_arm", f"{side}_forearm")
+        assert (knee[:, 0] < 0).mean() > 0.9 if len(knee) else True, "shanks swing backward"
+        assert (elbow[:, 0] > 0).mean() > 0.9 if len(elbow) else True, "forearms swing forward"
+
+
+@pytest.mark.real
+@pytest.mark.slow
+@pytest.mark.parametrize("file", ["cmu41/85_02.c3d", "cmu41/135_02.c3d"])
+def test_left_and_right_are_of_one_length(file, recordings):
+    skeleton = solve(read(recordings / file)).skeleton
+    for limb in ("upper_arm", "forearm", "thigh", "shank", "foot"):
+        left, right = (skeleton.limb(f"{side}_{limb}").length for side in ("left", "right"))
+        assert abs(left - right) < SIDES * (left + right) / 2, limb
