@@ -141,6 +141,18 @@ def test_more_than_255_labels(c3d_file):
     assert recording.labels == tuple(labels)
 
 
+def test_a_record_longer_than_a_signed_word_can_say(c3d_file):
+    labels = [f"{i}".ljust(200, "x") for i in range(255)]  # 51,000 bytes
+    groups = {"POINT": {"LABELS": labels, "Y_SCREEN": "+Y"}}  # what comes behind it is found
+    recording = read_c3d(c3d_file(points=frames(2, 255), groups=groups))
+    assert recording.labels == tuple(labels)
+    assert recording.up == "+y"
+
+
+def test_of_two_parameters_of_one_name_the_last_counts(c3d_file):
+    assert read_c3d(c3d_file(groups={"POINT": {"Rate": [50.0]}})).rate == 50.0
+
+
 def test_labels_beyond_the_points_in_use_name_nothing(c3d_file):
     assert read_c3d(c3d_file(labels=["A", "B", "C", "A"])).labels == ("A", "B")
 

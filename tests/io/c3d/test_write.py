@@ -310,11 +310,26 @@ def test_changed_events_replace_those_of_the_header(rich, tmp_path):
     assert source(after).layout.header.events == ()
 
 
+def test_events_keep_their_instant_when_the_first_frame_gets_another_number(c3d_file, tmp_path):
+    events = {"USED": [1], "LABELS": ["Foot Off"], "TIMES": [0.0, 1.25]}
+    before = read_c3d(c3d_file(first=101, groups={"EVENT": events}))
+    after = rewritten(replace(before, first_frame=201), tmp_path)
+    assert after.events == before.events
+    assert after.events[0].time == 0.25
+
+
+def test_fewer_and_longer_labels_of_as_many_letters(c3d_file, tmp_path):
+    six = [f"A{i}" for i in range(6)]
+    before = read_c3d(c3d_file(points=[[(float(i), 2.0, 3.0) for i in range(6)]], labels=six))
+    three = replace(before, markers=before.markers[:, :3], labels=("LEFT", "RIGH", "BACK"))
+    assert rewritten(three, tmp_path).labels == ("LEFT", "RIGH", "BACK")
+
+
 @pytest.mark.parametrize("n", [256, 700])
 def test_many_points_channels_and_events(rng, tmp_path, n):
     many = Recording(
         rng.normal(size=(2, n, 3)),
-        tuple(f"marker with a name of its own {i}" for i in range(n)),
+        tuple(f"marker with a {'very ' * 25} long name of its own {i}" for i in range(n)),
         100.0,
         analog=Analog(rng.normal(size=(4, n)), tuple(f"c{i}" for i in range(n)), ("V",) * n, 200.0),
         events=tuple(Event(i * 0.5, f"e{i}") for i in range(n)),
@@ -327,8 +342,8 @@ def test_many_points_channels_and_events(rng, tmp_path, n):
     assert [event.label for event in after.events] == [event.label for event in many.events]
     theirs = ezc3d.c3d(str(tmp_path / "written.c3d"))
     assert_array_equal(theirs["data"]["points"][:3].transpose(2, 1, 0) * 1e-3, after.markers)
-    names = theirs["parameters"]["POINT"]
-    assert [*names["LABELS"]["value"], *names["LABELS2"]["value"]][:256] == [*many.labels[:256]]
+    parts = [p for name, p in theirs["parameters"]["POINT"].items() if name.startswith("LABELS")]
+    assert [label for part in parts for label in part["value"]] == list(many.labels)
 
 
 @pytest.mark.parametrize("first", [1, 70])
