@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
-from kinesphere.parameterization.joint import JointView, view_joint
 from kinesphere.parameterization.settings import ParameterizationSettings
+from kinesphere.parameterization.view import JointView, view_joint
 
 Array = NDArray[np.float64]
 

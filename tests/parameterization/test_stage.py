@@ -122,6 +122,33 @@ def test_free_motion_is_told_and_gets_body_axes(performance):
         assert axis_errors(solved.skeleton.joint(name), true).max() < AXIS
 
 
+def test_free_motion_without_twist_suits_the_universal_joint(performance):
+    free = slice(round(performance.calibration[1] * 25), None)
+    told = performance.parameters
+    untwisted = motion_from_parameters(
+        replace(
+            told,
+            root_positions=told.root_positions[free],
+            root_rotations=told.root_rotations[free],
+            angles=told.angles[free],
+            twists=0 * told.twists[free],
+            residuals=told.residuals[free],
+            flags=told.flags[free],
+            moving=told.moving[free],
+        )
+    )
+    motion = only(untwisted, ["trunk", "right_upper_arm", "left_thigh"])
+    settings = ParameterizationSettings(axes=AxesSettings(method="universal-joint"))
+    solved = parameterize(motion, settings)
+    for joint in solved.skeleton.joints:
+        assert joint.axes_source == "movement"
+        # the proximal axis needs no reference orientation
+        true = performance.skeleton.joint(joint.name).axes[1]
+        assert np.rad2deg(np.arccos(min(1.0, abs(joint.axes[1] @ true)))) < AXIS
+    assert_allclose(solved.twists, 0, atol=0.05)
+    assert {j.axes_source for j in parameterize(motion).skeleton.joints} == {"body"}
+
+
 def test_the_history_can_be_written(solved):
     step = solved.history[-1]
     assert step.name == "parameterization"

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from kinesphere.data import Array, AxesSource, Json, Mask
+from kinesphere.data import Array, AxesSource, Json
 from kinesphere.geometry.rotations import mean_rotation, rotation_between
 from kinesphere.parameterization.anatomy import (
     declared_n_axes,
@@ -14,24 +14,26 @@ from kinesphere.parameterization.anatomy import (
     nominal_axes,
     substitute_axes,
 )
-from kinesphere.parameterization.angles import JointAngles, solve_angles
+from kinesphere.parameterization.angles import JointAngles, solve_angles, two_axis_angles
 from kinesphere.parameterization.axes import find_axes
 from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.confidence import (
+    PERCENTILES,
     AxesQuality,
     assess_axes,
     observed_n_axes,
     reasons_to_doubt,
 )
 from kinesphere.parameterization.main_movements import main_movements
-from kinesphere.parameterization.movement_filter import Movement, find_movement
 from kinesphere.parameterization.rest import paper_rest, rest_target, robust_rest
-from kinesphere.parameterization.samples import JointSamples, runs, smooth_rotations
+from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import (
+    AngleSettings,
     AxesSettings,
     ParameterizationSettings,
     parse_counts,
 )
+from kinesphere.parameterization.view import JointView
 
 TRIAL_FRAMES = 600  # enough to tell which order of axes serves better
 CLEARLY = 0.5  # another order must lower the twist at least to this share to be taken: where
@@ -52,49 +54,6 @@ class JointFit:
     findings: Mapping[str, Json]
     doubts: tuple[str, ...]
     """What speaks against axes from the movement, each a clause."""
-
-
-@dataclass(frozen=True, eq=False)
-class JointView:
-    """One joint as the whole recording shows it."""
-
-    name: str
-    rotations: Array
-    """(n_frames, 3, 3) ``parent_from_child``; NaN where unseen."""
-    long_axis: Array
-    """(3,) in the child."""
-    twist_known: Mask
-    """(n_frames,) False where the orientation about the limb is arbitrary."""
-    samples: JointSamples
-    """Smoothed, with the movement phases inside the calibration window."""
-    movement: Movement
-    calibration: Mask
-    """(n_frames,) seen frames that axes and rest are taken from."""
-
-    @property
-    def gravity(self) -> Array:
-        """(3,) centre of gravity of the samples; the limb aligned with its parent without any."""
-        p = self.samples.positions[self.calibration]
-        return np.asarray(p.mean(axis=0)) if len(p) else self.long_axis
-
-
-def view_joint(
-    name: str,
-    rotations: Array,
-    long_axis: Array,
-    twist_known: Mask,
-    rate: float,
-    calibration: Mask,
-    settings: ParameterizationSettings,
-) -> JointView:
-    """Smooth one joint's rotations and find its movement phases; arguments as in `JointView`."""
-    literal = settings.filter.method == "paper"
-    smooth = rotations if literal else smooth_rotations(rotations, rate, settings.filter.cutoff)
-    positions = smooth @ long_axis
-    movement = find_movement(positions, rate, settings.filter, calibration)
-    seen = np.asarray(np.isfinite(positions).all(axis=1) & calibration)
-    samples = JointSamples(smooth, positions, runs(movement.moving & seen), rate, long_axis)
-    return JointView(name, rotations, long_axis, twist_known, samples, movement, seen)
 
 
 def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
@@ -171,7 +130,8 @@ def _movement_axes(
     def find(half: JointSamples) -> Array:
         return find_axes(half, n_axes, options)
 
-    for phases in main_movements(view.samples, options):
+    free = options.method == "universal-joint" and n_axes == 2  # needs no main movements
+    for phases in (view.samples.phases,) if free else main_movements(view.samples, options):
         samples = view.samples.with_phases(phases)
         axes = find(samples)
         if len(axes) == n_axes:
@@ -180,6 +140,9 @@ def _movement_axes(
         unseen = not view.calibration.any()
         return axes, None, ["it is never seen" if unseen else "the limb hardly moves"]
     quality = assess_axes(samples, axes, find)
+    if free and len(axes) == n_axes:
+        quality = replace(quality, ranges=_free_ranges(view, axes))
+        options = replace(options, smallest_explained=0.0)
     if len(axes) < n_axes:
         return axes, quality, [f"only {len(axes)} of {n_axes} main movements is there"]
     return (
@@ -193,6 +156,21 @@ def _movement_axes(
             options,
         ),
     )
+
+
+def _free_ranges(view: JointView, axes: Array) -> Array:
+    """Return the ranges of both angles of a joint that moves about its axes at once, (2,) rad."""
+    at = view.calibration
+    angles = two_axis_angles(
+        view.samples.rotations[at],
+        axes,
+        reference_rotation(view.samples),
+        view.long_axis,
+        view.twist_known[at],
+        AngleSettings(),
+    ).angles[:, :2]
+    low, high = np.percentile(angles, PERCENTILES, axis=0)
+    return np.asarray(high - low)
 
 
 def _movement_rest(

@@ -5,8 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from kinesphere.data import Array, Codes, JointFlag, Json, Mask
-from kinesphere.parameterization.joint import JointFit, JointView
+from kinesphere.parameterization.joint import JointFit
 from kinesphere.parameterization.measures import number
+from kinesphere.parameterization.view import JointView
 
 
 def stage_warnings(

@@ -22,10 +22,8 @@ from kinesphere.geometry.chain import joint_rotations
 from kinesphere.parameterization.angles import JointAngles
 from kinesphere.parameterization.joint import (
     JointFit,
-    JointView,
     fit_joint,
     solve_joint,
-    view_joint,
 )
 from kinesphere.parameterization.measures import (
     lever,
@@ -34,6 +32,7 @@ from kinesphere.parameterization.measures import (
 )
 from kinesphere.parameterization.report import result_findings, stage_warnings
 from kinesphere.parameterization.settings import ParameterizationSettings
+from kinesphere.parameterization.view import JointView, view_joint
 
 TORN = 0.02  # m, joints closer together than this are never called dislocated
 OUTLYING = 6.0  # robust standard deviations

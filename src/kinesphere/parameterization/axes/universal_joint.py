@@ -13,6 +13,7 @@ from kinesphere.parameterization.settings import AxesSettings
 
 MOST_SAMPLES = 600  # evenly taken; more change nothing but the time
 SCALE = 0.05  # rad, where the robust loss turns from square to linear
+TWIST_SHARE = 0.9  # of a residual's variance that is put down to twist about the limb
 NEAREST = 15  # samples that make the reference orientation
 
 
@@ -21,8 +22,8 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
 
     Such a joint keeps ``xᵀ Q y = cos γ`` in every pose, with x the proximal axis in the parent and
     y the distal axis in the child. Sampson's residual of that constraint is minimized robustly
-    from several starts. Twist about the limb is not part of the joint: it acts as noise. One-axis
-    joints are left to the phase method.
+    from several starts. Twist about the limb is not part of the joint: it acts as noise of its
+    own direction, and much of it spoils the axes. One-axis joints are left to the phase method.
 
     Returns
     -------
@@ -37,17 +38,15 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
     if len(q) < 6:
         return np.empty((0, 3))
     reference = reference_rotation(samples)
-    best, best_cost = None, np.inf
-    starts = list(product(np.eye(3), repeat=2))
     short = q[:: max(1, len(q) // 80)]
-    for x, a1 in starts:
-        fit = _solve(short, x, reference.T @ a1, 12)
-        if fit is not None and fit[2] < best_cost:
-            best, best_cost = fit, fit[2]
-    if best is None or (fit := _solve(q, best[0], best[1], 60)) is None:
+    starts = product(np.eye(3), repeat=2)
+    tried = (_solve(short, x, reference.T @ a1, samples.long_axis, 12) for x, a1 in starts)
+    found = [fit for fit in tried if fit is not None]
+    if not found:
         return np.empty((0, 3))
-    x, y, _ = fit
-    return np.stack([reference @ y, x])
+    x, y, _ = min(found, key=lambda fit: fit[2])
+    fit = _solve(q, x, y, samples.long_axis, 60)
+    return np.empty((0, 3)) if fit is None else np.stack([reference @ fit[1], fit[0]])
 
 
 def reference_rotation(samples: JointSamples) -> Array:
@@ -58,8 +57,14 @@ def reference_rotation(samples: JointSamples) -> Array:
     return mean_rotation(known[np.argsort(apart, kind="stable")[:NEAREST]])
 
 
-def _solve(q: Array, x0: Array, y0: Array, steps: int) -> tuple[Array, Array, float] | None:
-    """Return x, y and the cost from one start; None if the axes became parallel."""
+def _solve(
+    q: Array, x0: Array, y0: Array, long_axis: Array, steps: int
+) -> tuple[Array, Array, float] | None:
+    """Return x, y and the cost from one start; None if the axes became parallel.
+
+    A residual's variance is that of noise about any axis, ``‖x × Q y‖²``, and of twist about the
+    limb u, ``(x · Q (u × y))²``: frames that see little twist count more.
+    """
     bases = _tangent(x0), _tangent(y0)
 
     def split(v: Array) -> tuple[Array, Array]:
@@ -68,10 +73,10 @@ def _solve(q: Array, x0: Array, y0: Array, steps: int) -> tuple[Array, Array, fl
 
     def residuals(v: Array) -> Array:
         x, y = split(v)
-        distal = q @ y
-        cosine = distal @ x
-        sine = np.sqrt(np.maximum(1 - cosine**2, 1e-6))
-        result: Array = (cosine - v[4]) / sine
+        cosine = q @ y @ x
+        twisting = q @ np.cross(long_axis, y) @ x
+        variance = (1 - TWIST_SHARE) * np.maximum(1 - cosine**2, 1e-6) + TWIST_SHARE * twisting**2
+        result: Array = (cosine - v[4]) / np.sqrt(variance)
         return result
 
     start = np.array([0, 0, 0, 0, float(np.median(q @ y0 @ x0))])
