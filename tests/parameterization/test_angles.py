@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from kinesphere.geometry.chain import joint_rotations
-from kinesphere.parameterization.angles import solve_angles
+from kinesphere.parameterization.angles import solve_angles, unwrapped
 from kinesphere.parameterization.settings import AngleSettings, TwistSettings
 
 EXACT = 1e-9  # rad; rounding leaves some 1e-12 away from singular poses
@@ -138,6 +138,19 @@ def test_a_gap_leaves_all_other_frames_as_they_were(rng):
     assert np.isnan(gappy.twists[30:37]).all()
     seen = np.isfinite(rotations[:, 0, 0])
     assert (gappy.angles[seen, :2] == whole.angles[seen, :2]).all()
+
+
+def test_turning_on_and_on_unwraps(rng):
+    turning = np.linspace(0, 15, 90)[:, None] * [1.0, -0.4]
+    wrapped = np.angle(np.exp(1j * turning))
+    assert_allclose(unwrapped(wrapped), turning, atol=1e-12)
+    wrapped[20:24, 0] = np.nan
+    wrapped[:, 1] = np.nan
+    found = unwrapped(wrapped)
+    seen = np.isfinite(wrapped[:, 0])
+    assert_allclose(found[seen, 0], turning[seen, 0], atol=1e-12)
+    assert np.isnan(found[~seen]).all()
+    assert np.isnan(found[:, 1]).all()
 
 
 def test_the_singularity_measure_is_the_sine_of_the_angle_to_the_plane(rng):

@@ -302,8 +302,15 @@ def test_axes_of_a_stranger_with_other_joints_are_no_help(performance):
     motion = only(performance.motion, ["trunk", "left_thigh"])
     stranger = only(performance.motion, ["trunk", "right_thigh"]).skeleton
     solved = parameterize(motion, reuse=stranger)
-    assert "no joint of the same name" in solved.history[-1].warnings[-1]
+    assert "no axes for left_hip" in solved.history[-1].warnings[-1]
     assert solved.skeleton.joints[0].axes_source == "movement"
+
+
+def test_a_body_without_joints_has_no_parameters_but_a_root(performance):
+    solved = parameterize(only(performance.motion, ["trunk"]))
+    assert solved.angles.shape == (performance.motion.n_frames, 0, 3)
+    assert_array_equal(solved.root_positions, performance.motion.origins[:, 0])
+    assert solved.history[-1].warnings == ()
 
 
 def test_twelve_frames_a_second_are_enough(performance):

@@ -137,6 +137,20 @@ def three_axis_angles(
     )
 
 
+def unwrapped(angles: Array) -> Array:
+    """Return angles without jumps of a full turn over time, (n_frames, ...) rad; NaN stays NaN.
+
+    Delivered angles lie in (−π, π]; a limb that turns on and on needs more than that. Across a gap
+    the nearest turn is taken.
+    """
+    continuous = np.array(angles, dtype=np.float64)
+    columns = continuous.reshape(len(continuous), -1)
+    for column in columns.T:
+        known = np.isfinite(column)
+        column[known] = np.unwrap(column[known])
+    return columns.reshape(angles.shape)
+
+
 def _colatitude(axis: Array, points: Array) -> Array:
     """Return the angle to an axis in rad, (..., 3) → (...,), precise at the poles too."""
     sine = np.linalg.norm(np.cross(axis, points), axis=-1)

@@ -83,7 +83,7 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
     if len(axes) < n_axes or (doubts and options.on_doubt == "body"):
         source: AxesSource = "body"
         axes = substitute_axes(view.name, n_axes, view.gravity)[::-1]
-        rest = _body_rest(view, axes, settings)
+        rest = _body_rest(view, axes)
         uncertainty = np.full(n_axes, np.nan)
     else:
         assert quality is not None
@@ -211,7 +211,7 @@ def _rest(
     return robust_rest(rotations[at], positions[at], slow, axes, target, settings.rest)
 
 
-def _body_rest(view: JointView, axes: Array, settings: ParameterizationSettings) -> Array:
+def _body_rest(view: JointView, axes: Array) -> Array:
     """Return the rest orientation that goes with axes of the body frame.
 
     The limb aligned with its parent; a one-axis joint's is tilted onto the cone the limb really
@@ -224,7 +224,6 @@ def _body_rest(view: JointView, axes: Array, settings: ParameterizationSettings)
         return np.eye(3)
     height = float(np.median(view.samples.positions[view.calibration] @ axes[0]))
     target, unique = rest_target(axes, np.array([height]), view.gravity, view.long_axis)
-    del settings
     return rotation_between(view.long_axis, target) if unique else np.eye(3)
 
 

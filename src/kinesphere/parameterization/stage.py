@@ -121,8 +121,11 @@ def parameterize(
             **paper_measures(rotations, rebuilt, limb.long_axis, mid_point),
         }
     warnings = stage_warnings(views, fits, settings.axes.method)
-    if reuse is not None and not set(reuse.joint_names) & set(skeleton.joint_names):
-        warnings += ("the solution whose axes were to be reused has no joint of the same name",)
+    own = [name for name, fit in fits.items() if fit.source != "reused"]
+    if reuse is not None and own:
+        warnings += (
+            f"the solution to be reused has no axes for {', '.join(own)}; theirs are from here",
+        )
     step = Step(
         "parameterization",
         {
