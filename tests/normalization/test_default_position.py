@@ -9,6 +9,7 @@ from kinesphere.normalization.samples import take_samples
 from kinesphere.normalization.settings import NormalizationSettings
 
 RATE = 10.0
+GRID = 0.1  # deviations; what turning the rectangle in small steps leaves
 HOLD = 12  # frames each pose is held for
 
 DOWN, UP, OUT, AHEAD = (0, -1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 0)
@@ -133,3 +134,74 @@ def test_frames_unseen_cost_but_do_not_spread(doll, tools):
     assert np.isfinite(cost).all()
     assert cost[14] > cost[30] + 0.9  # the trunk's tilt, unseen, counts 1
     assert cost[30] == pytest.approx(cost[35])
+
+
+def test_the_posture_cost_is_its_sum(sequence, doll):
+    """A plain twin: squares of what the terms say, tilt and angles up to 90°, speed up to 4."""
+    settings = NormalizationSettings(smoothing=0.0)
+    upside_down = doll(n_frames=9, world=np.diag([1.0, -1.0, -1.0])).motion
+    for motion in (sequence[0], upside_down):
+        samples = take_samples(motion, RATE, 0.2)
+        found = posture_cost(samples, settings)
+        t, span = found.terms, samples.anatomy.span
+        wanted = (
+            (np.minimum(t["trunk_tilt_deg"], 90) / 15) ** 2
+            + (np.minimum(t["arm_angle_deg"], 90) / 30) ** 2
+            + (np.minimum(t["thigh_angle_deg"], 90) / 30) ** 2
+            + (np.minimum(t["knee_flexion_deg"], 90) / 20) ** 2
+            + (t["plane_distance_mm"] / 1e3 / (0.085 * span)) ** 2
+            + np.minimum((t["speed_mm_per_s"] / 1e3 / (0.11 * span)) ** 2, 4)
+        )
+        assert_allclose(found.cost, wanted, atol=1e-9)
+
+
+def test_the_papers_cost_is_its_naive_twin(sequence):
+    """Plane by singular values, rectangle by turning it in small steps."""
+    samples = take_samples(sequence[0], RATE, 0.2)
+    angles = np.linspace(0, np.pi / 2, 3001)
+    flatness, shape, reach = [], [], []
+    for joints in samples.joints:
+        spread = joints - joints.mean(axis=0)
+        _, sizes, axes = np.linalg.svd(spread)
+        flatness.append(sizes[2] ** 2 / len(joints))
+        flat = spread @ axes[:2].T
+        u = np.ptp(flat @ [np.cos(angles), np.sin(angles)], axis=0)
+        v = np.ptp(flat @ [-np.sin(angles), np.cos(angles)], axis=0)
+        k = (u * v).argmin()
+        shape.append(min(u[k], v[k]) / max(u[k], v[k]))
+        reach.append(np.linalg.norm(spread, axis=1).mean())
+
+    def z(values):
+        away = np.array(values) - np.median(values)
+        return away / np.median(np.abs(away))
+
+    wanted = z(flatness) + z(shape) - z(reach)
+    cost = paper_cost(samples, NormalizationSettings(smoothing=0.0, speed=10.0)).cost
+    assert_allclose(cost, wanted, atol=GRID)
+
+
+def test_the_papers_cost_passes_over_fast_frames(doll):
+    walk = np.zeros((40, 3))
+    walk[20:, 0] = np.arange(20) * 0.15
+    samples = take_samples(doll(n_frames=40, walk=walk, rate=RATE).motion, RATE, 0.2)
+    cost = paper_cost(samples, NormalizationSettings(smoothing=0.0)).cost
+    assert np.isfinite(cost[:18]).all()
+    assert np.isinf(cost[23:38]).all()
+
+
+def test_the_window_is_centred(sequence):
+    samples = take_samples(sequence[0], RATE, 0.2)
+    raw = posture_cost(samples, NormalizationSettings(smoothing=0.0)).cost
+    smooth = posture_cost(samples, NormalizationSettings(smoothing=0.5)).cost
+    for f in range(len(raw)):
+        assert smooth[f] == pytest.approx(raw[max(f - 2, 0) : f + 3].mean())
+
+
+def test_a_lying_body_is_measured_against_itself(doll):
+    standing = take_samples(doll().motion, RATE, 0.2)
+    turn = np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]])
+    lying = take_samples(doll(world=turn).motion, RATE, 0.2)
+    a, b = (posture_cost(s, NormalizationSettings()).terms for s in (standing, lying))
+    assert b["trunk_tilt_deg"] == pytest.approx(90)
+    for name in ("arm_angle_deg", "thigh_angle_deg", "knee_flexion_deg"):
+        assert_allclose(b[name], a[name], atol=1e-6)

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from kinesphere.data import Skeleton
-from kinesphere.errors import AmbiguousFacing
+from kinesphere.errors import AmbiguousFacing, DegenerateMotion
 from kinesphere.normalization import NormalizationSettings, normalize
 from kinesphere.normalization.body_frame import face_the_same_way, lateral_frames, plane_frames
 
@@ -59,13 +59,13 @@ def test_elbows_tell(doll, tools):
 
 
 def test_the_walk_tells_people_without_feet(doll, tools):
-    walk = np.outer(np.linspace(0, 3, 80), [1.0, 0.0, 0.0])
+    walk = np.outer(np.linspace(0, 3, 80), [1.0, 2.0, 0.0])  # up some stairs
     names = without(tools, "foot", "hand")
-    # a little depth, so that the plane is not exactly the one of the walk
     it = doll(names, n_frames=80, stance=upright(tools), walk=walk)
     result = normalize(tools.renamed(it.motion))
     found = result.history[-1].findings["facing"]
     assert found["decided_by"] == "walking"
+    assert found["scores"]["walking"] > 0.99
     assert front(result) @ [1, 0, 0] > 0.99
 
 
@@ -111,6 +111,37 @@ def test_the_user_has_the_last_word(facing, sign, doll):
     assert warned == (sign < 0)
 
 
+@pytest.mark.parametrize(("facing", "contradicts"), [("-x", True), ("+x", False)])
+def test_who_is_overruled_is_said(facing, contradicts, doll, tools):
+    result = normalize(tools.renamed(doll().motion), facing=facing)
+    warnings = result.history[-1].warnings
+    assert any("contradicts the body (feet" in w for w in warnings) == contradicts
+
+
+def test_level_hands_are_no_feet(doll, tools):
+    back = {f"{side}_hand": (-1.0, -0.1, 0.0) for side in ("left", "right")}
+    result = normalize(tools.renamed(doll(stance=tools.stance | back).motion))
+    assert result.history[-1].findings["facing"]["scores"]["feet"] > 0.95
+
+
+def test_hips_alone_serve_where_shoulders_are_never_seen(doll, tools):
+    it = doll()
+    motion = it.motion
+    for name in ("trunk", "left_upper_arm", "right_upper_arm"):
+        motion = tools.hidden(motion, name, slice(None))
+    result = normalize(motion)
+    assert_allclose(result.rotations[:, 0], it.truth[:, 0], atol=1e-9)
+
+
+def test_too_few_joints_at_a_time_are_no_plane(doll, tools):
+    motion = doll().motion
+    for name in motion.skeleton.limb_names:
+        if name != "pelvis":  # which carries three
+            motion = tools.hidden(motion, name, slice(None))
+    with pytest.raises(DegenerateMotion, match="four joints in one frame"):
+        normalize(tools.renamed(motion))
+
+
 def test_a_direction_across_the_front_is_refused(doll):
     with pytest.raises(AmbiguousFacing, match=r"\+z lies across"):
         normalize(doll().motion, facing="+z")
@@ -123,8 +154,9 @@ def test_witnesses_that_are_not_there_are_named(doll, tools):
         normalize(tools.renamed(doll().motion), facing="names")
 
 
-def test_half_a_body_is_told_by_its_side(doll, tools):
-    names = tuple(n for n in tools.plan if "left" not in n and "foot" not in n)
+@pytest.mark.parametrize("missing", ["left", "right"])
+def test_half_a_body_is_told_by_its_side(missing, doll, tools):
+    names = tuple(n for n in tools.plan if missing not in n and "foot" not in n)
     it = doll(names)
     result = normalize(it.motion)
     found = result.history[-1].findings
@@ -160,9 +192,10 @@ def test_the_plane_gives_the_papers_axes(rng):
 
 def test_a_level_plane_takes_its_longer_side(rng):
     joints = rng.uniform(-1, 1, size=(1, 30, 3)) * [0.9, 0.02, 0.25]
-    trunk = np.array([[-1.0, 0.0, 0.0]])
-    frame = plane_frames(joints, np.array([[0.0, 1.0, 0.0]]), trunk)[0]
-    assert frame[:, 1] @ trunk[0] > 0.98
+    for head in (-1.0, 1.0):
+        trunk = np.array([[head, 0.0, 0.0]])
+        frame = plane_frames(joints, np.array([[0.0, 1.0, 0.0]]), trunk)[0]
+        assert frame[:, 1] @ trunk[0] > 0.98
 
 
 def test_fronts_are_brought_to_one_side(rng):

@@ -401,6 +401,7 @@ def test_a_guessed_twist_is_left_out(tools, rng):
     along = rotations[:100, i] @ it.motion.skeleton.limbs[i].long_axis
     rotations[:100, i] = Rotation.from_rotvec(0.9 * along).as_matrix() @ rotations[:100, i]
     flags[:100, i], flags[100:, i] = PoseFlag.TWIST_UNKNOWN, PoseFlag.TWIST_BORROWED
+    flags[40:60, i] = PoseFlag.FILLED  # between guesses, hence a guess
     result = normalize(replace(it.motion, rotations=rotations, flags=flags))
     assert apart(result.rotations[100:], it.truth[100:]) < EXACT
     found = step_of(result).findings
@@ -416,3 +417,90 @@ def test_every_setting_is_on_record(doll):
     assert len(step.settings) == len(NormalizationSettings.__dataclass_fields__)
     with pytest.raises(BadSetting, match="posture, paper"):
         NormalizationSettings(position="best")
+
+
+def test_a_walker_is_averaged_over_strides(tools, rng):
+    """Shoulders turn against the pelvis, and the arms hang best at one end of that turn."""
+    time = np.arange(300) / 50.0
+    swing = np.sin(2 * np.pi * time)
+    bends = {"trunk": np.outer(np.deg2rad(12) * swing, [0, 1.0, 0])}
+    for side in ("left", "right"):
+        bends[f"{side}_forearm"] = np.outer(0.25 * (1 - swing), [0, 0, 1.0])
+    it = tools.make_doll(rng, n_frames=300, bends=bends, walk=np.outer(1.3 * time, [1.0, 0, 0]))
+    many = normalize(it.motion)
+    single = normalize(it.motion, NormalizationSettings(frames="single"))
+    assert apart(many.rotations[:, 0], it.truth[:, 0]) < np.deg2rad(2.5)
+    assert apart(single.rotations[:, 0], it.truth[:, 0]) > np.deg2rad(5)
+
+
+def test_shoulders_that_turn_in_the_stance_are_flagged(tools, rng):
+    yaw = np.deg2rad(np.concatenate([np.full(60, 18.0), np.full(60, -18.0)]))
+    it = tools.make_doll(rng, n_frames=120, bends={"trunk": np.outer(yaw, [0, 1.0, 0])})
+    step = step_of(normalize(it.motion))
+    assert step.findings["spread_max_deg"] > 10
+    assert any("body frames of the default position differ" in w for w in step.warnings)
+
+
+def test_lying_is_no_licence_for_any_posture(tools, rng):
+    """The cost of lying must not widen the margin: raised arms are still left out."""
+    lift = np.concatenate([np.zeros(100), np.full(100, -0.9)])
+    it = tools.make_doll(
+        rng,
+        n_frames=200,
+        world=np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]]),
+        bends={"right_upper_arm": np.outer(lift, [1.0, 0, 0])},
+    )
+    found = step_of(normalize(it.motion)).findings
+    assert max(found["frames_averaged"]) <= 101 + 105
+
+
+def test_a_facing_holds_in_the_default_position_alone(doll):
+    """Somebody who turns round afterwards is not averaged with himself."""
+    angles = np.concatenate([np.zeros(20), np.linspace(0, 3, 80)])
+    yaw = Rotation.from_rotvec(np.outer(angles, [0, 1.0, 0])).as_matrix()
+    motion = doll(("pelvis", "trunk", "head"), n_frames=100, world=yaw).motion
+    result = normalize(motion, facing="-z")
+    assert step_of(result).findings["n_frames_averaged"] == 1
+    best = step_of(result).findings["default_frame"] - motion.first_frame
+    assert_allclose(result.rotations[best, 0][:, 0], [0.0, 0.0, -1.0], atol=EXACT)
+
+
+def test_up_may_be_the_worlds(doll):
+    leaning = doll(world=Rotation.from_rotvec([0, 0, -0.2]).as_matrix())
+    result = normalize(leaning.motion, NormalizationSettings(vertical="up"))
+    assert_allclose(result.rotations[0, 0], np.eye(3), atol=EXACT)
+
+
+def test_legs_that_lie_are_told_by_their_own_line(doll, tools):
+    it = doll(tools.legs, world=Rotation.from_rotvec([np.pi / 2, 0, 0]).as_matrix())
+    result = normalize(it.motion)
+    assert apart(result.rotations, it.truth) < np.deg2rad(1.5)
+    assert any("lies" in warning for warning in step_of(result).warnings)
+
+
+def test_a_wide_or_deep_body_is_flagged_by_the_papers_measures(doll, tools):
+    arms = {f"{s}_{x}": (0, 0, z) for s, z in (("left", -1), ("right", 1))
+            for x in ("upper_arm", "forearm", "hand")}  # fmt: skip
+    step = step_of(normalize(tools.renamed(doll(stance=tools.stance | arms).motion)))
+    assert any("times as wide as tall" in warning for warning in step.warnings)
+    ahead = {f"{s}_{x}": (1, 0, 0) for s in ("left", "right") for x in ("thigh", "shank")}
+    step = step_of(normalize(doll(stance=tools.stance | ahead).motion))
+    assert any("mm off their plane" in warning for warning in step.warnings)
+
+
+def test_the_nearest_posture_counts_where_the_default_one_is_hidden(tools, rng):
+    """Frames far from hanging, in which the forearm is twisted too, must not be averaged in."""
+    flexion = np.concatenate([np.zeros(60), np.full(8, 0.9), np.full(32, 1.6)])
+    it = tools.make_doll(
+        rng,
+        n_frames=100,
+        stance={name: (0, -1, 0) for name in tools.stance if "foot" not in name},
+        bends={"left_forearm": np.outer(flexion, [0, 0, 1.0])},
+    )
+    i = it.index("left_forearm")
+    rotations = it.motion.rotations.copy()
+    along = rotations[68:, i] @ it.motion.skeleton.limbs[i].long_axis
+    rotations[68:, i] = Rotation.from_rotvec(0.8 * along).as_matrix() @ rotations[68:, i]
+    motion = tools.hidden(replace(it.motion, rotations=rotations), "left_forearm", slice(0, 60))
+    result = normalize(motion)
+    assert apart(result.rotations[60:68, i], it.truth[60:68, i]) < EXACT

@@ -3,6 +3,7 @@
 from kinesphere.normalization.settings import NormalizationSettings
 
 _TOLERATED = 2.0  # times the deviation that costs 1
+_FLAT = 0.7  # times the plane distance that costs 1; who stands stays below half of that
 _LYING = 60.0  # deg of tilt from which a trunk lies rather than leans
 _UPSIDE_DOWN = 120.0  # deg
 _SLIM = 0.6  # short over long side of the rectangle around the joints of somebody who stands
@@ -32,14 +33,13 @@ def doubts(
         reasons.append(f"the body lies (trunk {tilt:.0f} deg from upright)")
     elif tilt > _TOLERATED * settings.trunk_tilt:
         reasons.append(f"the trunk leans by {tilt:.0f} deg")
-    if tilt <= _LYING:  # lying down, every limb is far from the vertical
-        if (angle := terms.get("arm_angle_deg", 0.0)) > _TOLERATED * settings.arm_angle:
-            reasons.append(f"the arms do not {arms} (off by {angle:.0f} deg)")
-        if (angle := terms.get("thigh_angle_deg", 0.0)) > _TOLERATED * settings.thigh_angle:
-            reasons.append(f"a thigh is {angle:.0f} deg off the vertical, as when seated")
+    if (angle := terms.get("arm_angle_deg", 0.0)) > _TOLERATED * settings.arm_angle:
+        reasons.append(f"the arms do not {arms} (off by {angle:.0f} deg)")
+    if (angle := terms.get("thigh_angle_deg", 0.0)) > _TOLERATED * settings.thigh_angle:
+        reasons.append(f"a thigh is {angle:.0f} deg off the vertical, as when seated")
     if (angle := terms.get("knee_flexion_deg", 0.0)) > _TOLERATED * settings.knee_flexion:
         reasons.append(f"a knee is bent by {angle:.0f} deg")
-    if (distance := terms.get("plane_distance_mm", 0.0)) > _TOLERATED * plane:
+    if (distance := terms.get("plane_distance_mm", 0.0)) > _FLAT * plane:
         reasons.append(f"the joints are {distance:.0f} mm off their plane")
     if (found := terms.get("speed_mm_per_s", 0.0)) > _TOLERATED * speed:
         reasons.append(f"the body moves at {found:.0f} mm/s")

@@ -186,7 +186,10 @@ def feet_of(samples: Samples, chosen: Mask) -> list[int]:
     sided = any(without_side(name) != name for name in anatomy.limbs)
     if named or sided or not anatomy.skeleton.joints:
         return named
-    height = np.nanmedian(samples.joints[chosen][:, :, 1], axis=0)
+    heights = samples.joints[chosen][:, :, 1]
+    seen = np.asarray(np.isfinite(heights).any(axis=0))
+    height = np.full(len(seen), np.nan)
+    height[seen] = np.nanmedian(heights[:, seen], axis=0)
     low = np.nanmin(height) + _LOW * (np.nanmax(height) - np.nanmin(height))
     found = []
     for joint in range(len(height)):
