@@ -95,7 +95,8 @@ class C3dFile:
             groups.setdefault(group, {}).update(parameters)
 
         def section(data_block):
-            groups["POINT"]["DATA_START"] = [data_block]
+            if groups["POINT"]["DATA_START"] is not None:
+                groups["POINT"]["DATA_START"] = [data_block]
             body = b""
             for number, (group, parameters) in enumerate(groups.items(), 1):
                 body += self.record(group, -number, b"")

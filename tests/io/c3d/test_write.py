@@ -344,6 +344,8 @@ def test_many_points_channels_and_events(rng, tmp_path, n):
     assert_array_equal(theirs["data"]["points"][:3].transpose(2, 1, 0) * 1e-3, after.markers)
     parts = [p for name, p in theirs["parameters"]["POINT"].items() if name.startswith("LABELS")]
     assert [label for part in parts for label in part["value"]] == list(many.labels)
+    with (tmp_path / "written.c3d").open("rb") as file:  # takes the way to a record as signed
+        assert c3d.Reader(file).get("POINT:UNITS").string_value == "mm"
 
 
 @pytest.mark.parametrize("first", [1, 70])
