@@ -39,14 +39,9 @@ def main() -> int:
         for folder in (results, document):
             folder.mkdir(parents=True, exist_ok=True)
         (document / "accuracy.md").write_text(text, encoding="utf-8")
+        lines = ",\n".join(json.dumps(trial.as_json(), allow_nan=False) for trial in done)
         (results / "accuracy.json").write_text(
-            json.dumps(
-                {"version": __version__, "trials": [trial.as_json() for trial in done]},
-                allow_nan=False,
-                indent=1,
-            )
-            + "\n",
-            encoding="utf-8",
+            f'{{"version": "{__version__}", "trials": [\n{lines}\n]}}\n', encoding="utf-8"
         )
     misses = missed(done)
     for sentence in misses:

@@ -1,7 +1,7 @@
 """Solve spoiled performances and compare with what they were."""
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -27,11 +27,14 @@ class Trial:
     """Why there is no solution; empty where there is one."""
 
     def as_json(self) -> dict[str, Any]:
-        """Return what JSON can hold; NaN becomes null."""
+        """Return what JSON can hold; NaN becomes null, digits that mean nothing are cut."""
         rows = [
             {
-                key: (None if isinstance(value, float) and not np.isfinite(value) else value)
-                for key, value in asdict(row).items()
+                "measure": row.measure,
+                "of": row.of,
+                "error": _short(row.error),
+                "largest": _short(row.largest),
+                "unit": row.unit,
             }
             for row in self.rows
         ]
@@ -42,6 +45,10 @@ class Trial:
             "failure": self.failure,
             "rows": rows,
         }
+
+
+def _short(value: float) -> float | None:
+    return round(value, 5) if np.isfinite(value) else None
 
 
 def trials(conditions: tuple[Condition, ...], seeds: range) -> Iterator[Trial]:
