@@ -103,6 +103,21 @@ def test_settings_reach_their_stage():
     assert by_name["parameterization"]["axes.on_doubt"] == "movement"
 
 
+@pytest.mark.slow
+def test_one_of_two_people_is_solved():
+    first, second = (small(seed=seed, layout="cmu41").recording for seed in (1, 2))
+    both = replace(
+        first,
+        markers=np.concatenate([first.markers, second.markers], axis=1),
+        labels=tuple(f"{who}:{label}" for who in "AB" for label in first.labels),
+    )
+    alone = solve(second)
+    picked = solve(both, subject="B")
+    assert_array_equal(picked.motion.origins, alone.motion.origins)
+    with pytest.raises(BadRecording, match=r"A .*B"):
+        solve(both)
+
+
 def test_nothing_seen_is_refused():
     recording = small().recording
     blind = replace(recording, markers=np.full_like(recording.markers, np.nan))

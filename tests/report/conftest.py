@@ -9,7 +9,7 @@ from kinesphere.data import JointFlag, PoseFlag, Solution, Step
 from kinesphere.synthetic import make_performance
 
 HOSTILE = "</script><script>alert(1)</script>"
-QUOTED = "\"'><img src=x onerror=alert(2)>"
+QUOTED = "</script \"'><img src=x onerror=alert(2)><!--<script "
 
 
 @pytest.fixture(scope="session")

@@ -116,7 +116,7 @@ class Chart {
     context.textAlign = "right";
     context.textBaseline = "middle";
     const [low, high] = this.range;
-    const step = Math.max(5, niceStep(high - low, 4));
+    const step = Math.max(5, niceStep(high - low, 5));
     for (let v = Math.ceil(low / step) * step; v <= high; v += step) {
       const y = Math.round(floor - ((v - low) / (high - low)) * (floor - margin.top)) + 0.5;
       context.strokeStyle = Math.abs(v) < 1e-9 ? theme.zero : theme.rule;

@@ -1,0 +1,129 @@
+"""The tables: every figure against one computed here."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kinesphere.data import PoseFlag
+from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
+
+
+def with_joint(solution, index, **changes):
+    """Return the solution with one joint changed."""
+    joints = list(solution.skeleton.joints)
+    joints[index] = replace(joints[index], **changes)
+    skeleton = replace(solution.skeleton, joints=tuple(joints))
+    return replace(solution, parameters=replace(solution.parameters, skeleton=skeleton))
+
+
+@pytest.mark.parametrize(
+    ("changes", "trust"),
+    [
+        ({"observability": "determined", "residual": 0.0149, "axes_source": "movement"}, "good"),
+        ({"observability": "given", "residual": 0.001, "axes_source": "reused"}, "good"),
+        ({"observability": "determined", "residual": 0.0151, "axes_source": "movement"}, "fair"),
+        ({"observability": "hinge", "residual": 0.001, "axes_source": "movement"}, "fair"),
+        ({"observability": "determined", "residual": 0.001, "axes_source": "body"}, "fair"),
+        ({"observability": "determined", "residual": 0.0301, "axes_source": "movement"}, "poor"),
+        ({"observability": "undetermined", "residual": 0.001, "axes_source": "movement"}, "poor"),
+    ],
+)
+def test_trust_is_what_a_centre_rests_on(solution, changes, trust):
+    assert joint_rows(with_joint(solution, 3, **changes))[3].trust == trust
+
+
+def test_a_joint_row_tells_the_figures(solution):
+    changed = with_joint(
+        solution,
+        3,
+        residual=0.01234,
+        range_of_motion=np.deg2rad(56.7),
+        axes_source="movement",
+        axes_uncertainty=np.full(solution.skeleton.joints[3].n_axes, np.deg2rad(2.5)),
+        note="a note",
+    )
+    row = joint_rows(changed)[3]
+    joint = changed.skeleton.joints[3]
+    assert (row.name, row.index, row.n_axes) == (joint.name.replace("_", " "), 3, joint.n_axes)
+    assert (row.residual, row.range_of_motion, row.note) == ("12.3 mm", "56.7°", "a note")
+    assert row.axes == f"{joint.n_axes} from movement, ± 2.5°"
+    degrees = np.rad2deg(solution.parameters.angles[:, 3, 0])
+    low, high = np.nanpercentile(degrees, [5, 95])
+    assert row.angles[0] == f"{round(low)}° … {round(high)}°"
+    assert row.angles[2] == "–"
+    share = 10 / solution.parameters.n_frames
+    assert f"unseen {share:.1%}" in row.flagged
+    assert "singular" in row.flagged
+
+
+def test_limbs_are_measured_against_the_other_side(solution):
+    rows = {row.name: row for row in limb_rows(solution)}
+    lengths = {limb.name: limb.length for limb in solution.skeleton.limbs}
+    left, right = lengths["left_thigh"], lengths["right_thigh"]
+    share = (left - right) / ((left + right) / 2)
+    assert rows["left thigh"].other_side == f"{share:+.1%}"
+    assert rows["right thigh"].other_side == f"{-share:+.1%}"
+    assert rows["head"].other_side == ""
+    assert rows["left thigh"].length == f"{left * 1e3:.1f} mm"
+    assert rows["left thigh"].markers == ", ".join(solution.skeleton.limb("left_thigh").markers)
+
+
+def test_limbs_tell_how_often_they_were_seen(solution):
+    row = limb_rows(solution)[4]
+    unseen = (solution.motion.flags[:, 4] == PoseFlag.UNSEEN).mean()
+    assert row.unseen == f"{unseen:.1%}"
+    assert row.measured == f"{1 - unseen:.1%}"
+
+
+def test_charts_stand_left_beside_right_whatever_the_order(solution):
+    rows = joint_rows(solution)
+    shuffled = [rows[i] for i in np.random.default_rng(2).permutation(len(rows))]
+    ordered = chart_order(shuffled)
+    assert sorted(row.index for row in ordered) == list(range(len(rows)))
+    assert (ordered[0].name, ordered[0].side) == ("neck", "alone")
+    for left, right in zip(ordered[1::2], ordered[2::2], strict=True):
+        assert (left.side, right.side) == ("left", "right")
+        assert left.name.removeprefix("left") == right.name.removeprefix("right")
+
+
+def test_two_joints_of_the_middle_share_a_row(solution):
+    rows = joint_rows(solution)
+    lumbar = replace(rows[0], name="lumbar")
+    assert [row.side for row in chart_order([lumbar, *rows])[:2]] == ["middle", "middle"]
+
+
+def test_a_joint_without_its_other_side_keeps_its_chart(solution):
+    rows = [row for row in joint_rows(solution) if row.name != "right knee"]
+    assert sorted(r.index for r in chart_order(rows)) == sorted(r.index for r in rows)
+
+
+def test_nested_findings_become_a_table(solution):
+    step = solution.history[1]
+    found = {"joints": {"left_knee": {"n_axes": 1, "list": [1]}, "neck": {"spread_deg": 2.0}}}
+    history = (replace(step, findings={**found, "x_mm": 1.0}),)
+    (card,) = step_cards(
+        replace(solution, parameters=replace(solution.parameters, history=history))
+    )
+    assert card.findings == (("x", "1 mm"),)
+    (table,) = card.tables
+    assert table.header == ("n axes", "spread")
+    assert table.rows == (("left knee", "1", "–"), ("neck", "–", "2°"))
+
+
+def test_steps_tell_time_settings_and_version(solution):
+    read, skeleton = step_cards(solution)
+    assert (read.seconds, skeleton.seconds) == ("", "1.5 s")
+    assert skeleton.settings == (("outlier_mm", "3"), ("nested.deep", "yes"))
+    assert skeleton.version == "9.9.9"
+
+
+def test_tiles_sum_up(solution):
+    by_name = {tile.name: tile for tile in tiles(solution)}
+    motion = solution.motion
+    assert by_name["Recording"].aside == f"{motion.n_frames:,} frames at {motion.rate:g} Hz"
+    assert by_name["Skeleton"].value == "12 limbs"
+    assert by_name["Seen"].value == f"{motion.seen.mean():.1%}"
+    residual = np.sqrt(np.nanmean(motion.residuals**2)) * 1e3
+    value, unit = by_name["Limb fit"].value.split()
+    assert (float(value), unit) == (pytest.approx(residual, rel=0.005), "mm")  # three figures
