@@ -5,6 +5,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+STILL = 1e-6
+"""m, motion below which a marker says nothing: rounding is all there is."""
+
 
 def score_centre(
     rotations: Array, shifts: Array, ridge: float = 1e-3
@@ -68,8 +71,9 @@ def sphere_centre(points: Array, expected: Array, ridge: float = 1e-4) -> Array:
         centred = y - y.mean(axis=0)
         normal += 2 * centred.T @ centred
         right += centred.T @ (y**2).sum(axis=1)
-    if not normal.any():
+    widest = np.linalg.eigvalsh(normal)[2]
+    if widest < STILL**2:
         return expected
-    normal += ridge * np.linalg.eigvalsh(normal)[2] * np.eye(3)
+    normal += ridge * widest * np.eye(3)
     centre: Array = expected + np.linalg.solve(normal, right)
     return centre

@@ -20,6 +20,8 @@ ALIGNED = 0.8
 """Least cosine between the axis of a hinge and the direction its motion knows least."""
 FIRM = 16.0
 """Information from the motion, in the expectation's units, above which a hinge is left to it."""
+FAR = 10.0
+"""Spreads from the expectation beyond which an algebraic centre is no place to start from."""
 _DIFFERENCE = 1e-6  # m, step of the variance's derivative, which is a quadratic: nearly exact
 
 
@@ -135,8 +137,9 @@ def fit_centre(
     n_poses = count_poses(view, expected)
     # distances and orientation are two readings of the same sightings
     looks = n_poses / hidden**2 / (1 if view.turning is None else 2)
-    starts = (expected, sphere_centre(view.points, expected))
-    x = min(starts, key=lambda start: _cost(view, start, expected, spread))
+    x, algebraic = expected, sphere_centre(view.points, expected)
+    if np.linalg.norm(algebraic - expected) < FAR * spread:
+        x = min((expected, algebraic), key=lambda start: _cost(view, start))
     prior = np.eye(3) / spread**2
     x = _descend(view, x, expected, 0.01 * prior, looks, rounds)
     if hinge is not None:
@@ -180,14 +183,10 @@ class _Term(NamedTuple):
     """(n, k, 3) 1/m, how the residual follows the centre."""
 
 
-def _cost(view: View, x: Array, expected: Array, spread: float) -> float:
-    """Return how badly a start fits, its distance from the expectation taken in mildly."""
-    terms = _terms(view, x)
-    off = (
-        np.concatenate([np.abs(term.residual).ravel() for term in terms]) if terms else np.zeros(1)
-    )
-    far = float(np.linalg.norm(x - expected)) / (10 * spread)
-    return float(np.log(np.mean(off) + NOISE_FLOOR)) + max(0.0, far - 1.0)
+def _cost(view: View, x: Array) -> float:
+    """Return how badly a start fits: the mean size of the residuals."""
+    off = [np.abs(term.residual).ravel() for term in _terms(view, x)]
+    return float(np.mean(np.concatenate(off))) if off else 0.0
 
 
 def _descend(

@@ -2,11 +2,12 @@
 
 from typing import NamedTuple
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.geometry.rotations import hat
-from kinesphere.kernels.rigid import FITTED, fit_rigid_kernel
+from kinesphere.geometry.rotations import hat, nearest_rotation
+from kinesphere.kernels.rigid import COLLINEAR, FITTED, TOO_FEW, fit_rigid_kernel
 
 Array = NDArray[np.float64]
 
@@ -56,7 +57,10 @@ def fit_rigid(
     rotations = np.full((n_frames, 3, 3), np.nan)
     shifts = np.full((n_frames, 3), np.nan)
     status = np.zeros(n_frames, dtype=np.uint8)
-    fit_rigid_kernel(
+    # uncompiled, the kernel takes a hundred times as long as batched singular values
+    compiled = not getattr(numba.config, "DISABLE_JIT", False)
+    fit = fit_rigid_kernel if compiled else fit_rigid_batched
+    fit(
         np.ascontiguousarray(shape, dtype=np.float64),
         np.ascontiguousarray(points, dtype=np.float64),
         w,
@@ -66,6 +70,36 @@ def fit_rigid(
         status,
     )
     return RigidFit(rotations, shifts, status)
+
+
+def fit_rigid_batched(
+    shape: Array,
+    points: Array,
+    weights: Array,
+    min_spread: float,
+    rotations: Array,
+    shifts: Array,
+    status: NDArray[np.uint8],
+) -> None:
+    """Do what `fit_rigid_kernel` does, by singular values (Kabsch 1976) of all frames at once."""
+    seen = weights > 0
+    count = seen.sum(axis=1)
+    total = np.maximum(weights.sum(axis=1), np.finfo(np.float64).tiny)[:, None]
+    local = np.where(np.isfinite(shape), shape, 0.0)
+    world = np.where(seen[..., None], points, 0.0)
+    a = weights @ local / total
+    b = (weights[..., None] * world).sum(axis=1) / total
+    centred = (local - a[:, None]) * seen[..., None]
+    spread = np.einsum("npi,npj->nij", centred, centred)
+    trace = np.trace(spread, axis1=1, axis2=2)
+    minors = (trace**2 - np.einsum("nij,nij->n", spread, spread)) / 2
+    wide = minors > trace * count * min_spread**2
+    status[:] = np.where(count < 3, TOO_FEW, np.where(wide, FITTED, COLLINEAR))
+    good = status == FITTED
+    cross = np.einsum("np,npi,npj->nij", weights, world - b[:, None], centred)[good]
+    found = nearest_rotation(cross)
+    rotations[good] = found
+    shifts[good] = b[good] - (found @ a[good][..., None])[..., 0]
 
 
 def into_frame(rotations: Array, shifts: Array, points: Array) -> Array:

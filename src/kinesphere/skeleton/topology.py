@@ -49,7 +49,10 @@ def joint_cost(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit | N
     pose_a, pose_b
         Poses of the limbs; None for a limb with too few markers.
     """
-    return min(_centre_cost(a, b, pose_a, pose_b), _distance_cost(a, b), _distance_cost(b, a))
+    centre = _centre_cost(a, b, pose_a, pose_b)
+    if pose_a is not None and pose_b is not None:
+        return centre
+    return min(centre, _distance_cost(a, b), _distance_cost(b, a))
 
 
 def _centre_cost(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit | None) -> float:
