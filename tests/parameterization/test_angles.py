@@ -27,6 +27,7 @@ def draw_joint(rng, between, cone=90.0):
     turn = Rotation.random(rng=rng)
     swing, _ = Rotation.align_vectors([direction], [turn.apply(long_axis)])
     frame = Rotation.random(rng=rng)
+    axes = axes[:: rng.choice([-1, 1])]  # the limb may rest on either side of their plane
     return frame.apply(axes), (frame * swing * turn).as_matrix(), long_axis
 
 
@@ -118,8 +119,10 @@ def test_wide_swings_take_the_right_branch(rng, branch, most):
     assert np.mean(rules) > 0.1  # the rest position's side alone is not enough
 
 
-def test_without_twist_the_path_stays_on_the_side_of_rest(rng):
+@pytest.mark.parametrize("turn", [1, -1])
+def test_without_twist_the_path_stays_on_the_side_of_rest(rng, turn):
     axes, rest, long_axis = draw_joint(rng, 90)
+    axes = axes[::turn]
     truth = smooth(rng, 200, [60, 60, 170])
     rotations = joint_rotations(axes, rest, long_axis, truth[:, :2], truth[:, 2])
     solved = solve(rotations, axes, rest, long_axis, known=np.zeros(200, dtype=bool))

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -100,6 +101,12 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         "axes_source": source,
         "doubts": list(doubts),
         "phases_s": [[a / rate, b / rate] for a, b in view.samples.phases],
+        "axes_uncertainty_deg": [
+            float(u) if np.isfinite(u) else None for u in np.rad2deg(uncertainty)
+        ],
+        "axes_apart_deg": [
+            float(np.rad2deg(np.arccos(np.clip(abs(a @ b), 0, 1)))) for a, b in pairwise(axes)
+        ],
         **_quality_findings(quality),
     }
     return JointFit(axes, rest, source, uncertainty, findings, tuple(doubts))
