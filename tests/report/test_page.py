@@ -88,6 +88,8 @@ def test_labels_and_warnings_stay_text(html, scene, solution):
     assert HOSTILE in solution.recording.labels
     labels = [marker["label"] for marker in scene["markers"]]
     assert labels[:2] == list(solution.recording.labels[:2])
+    data = html.split('id="scene">')[1].split("</script>")[0]
+    assert not {"<", ">", "&"} & {*data}  # browsers end a script at less than Python's parser does
     assert any(f"label {HOSTILE}" in text for text in page.texts)
     assert page.all("h1")[0][2] == "Trial <1> & more"
 
