@@ -121,6 +121,7 @@ class C3dFile:
             header[298:300], header[300:302] = self.word(12345), self.word(len(self.events))
             for i, (time, label) in enumerate(self.events):
                 header[304 + 4 * i : 308 + 4 * i] = self.real(time)
+                header[376 + i] = i + 1  # whether to show it
                 header[396 + 4 * i : 400 + 4 * i] = label.ljust(4).encode()
         number = self.real if self.scale < 0 else self.word
         numbers = []

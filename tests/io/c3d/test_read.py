@@ -221,6 +221,14 @@ def test_events_run_on_the_clock_of_the_recording(c3d_file):
     )
 
 
+def test_a_header_without_the_key_to_its_labels_has_no_events(c3d_file):
+    path = c3d_file(events=[(0.0, "RHS")])
+    content = bytearray(path.read_bytes())
+    content[298:300] = b"\0\0"
+    path.write_bytes(bytes(content))
+    assert read_c3d(path).events == ()
+
+
 @pytest.mark.parametrize(
     ("said", "up"), [("+Z", "+z"), ("Y", "+y"), ("-X", "-x"), ("Z+", "+z"), ("up", None)]
 )

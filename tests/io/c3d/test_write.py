@@ -310,6 +310,22 @@ def test_changed_events_replace_those_of_the_header(rich, tmp_path):
     assert source(after).layout.header.events == ()
 
 
+@pytest.mark.parametrize("processor", ["INTEL", "DEC", "MIPS"])
+def test_events_of_the_header_speak_intel(c3d_file, tmp_path, processor):
+    events = [(0.25, "RHS"), (0.5, "LTO")]
+    header = source(rewritten(read_c3d(c3d_file(processor=processor, events=events)), tmp_path))
+    assert header.layout.header.events == tuple(events)
+    assert header.layout.header.raw[376:380] == b"\x01\x02\0\0"
+
+
+def test_icons_of_events_that_are_no_more_go_with_them(c3d_file, tmp_path):
+    events = {"USED": [1], "LABELS": ["Foot Off"], "TIMES": [0.0, 0.0], "ICON_IDS": [2]}
+    before = read_c3d(c3d_file(groups={"EVENT": events}))
+    after = rewritten(replace(before, events=(Event(0.0, "Foot Strike"),)), tmp_path)
+    assert source(before).layout.section.find("EVENT", "ICON_IDS") is not None
+    assert source(after).layout.section.find("EVENT", "ICON_IDS") is None
+
+
 def test_events_keep_their_instant_when_the_first_frame_gets_another_number(c3d_file, tmp_path):
     events = {"USED": [1], "LABELS": ["Foot Off"], "TIMES": [0.0, 1.25]}
     before = read_c3d(c3d_file(first=101, groups={"EVENT": events}))
