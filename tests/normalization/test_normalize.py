@@ -443,7 +443,7 @@ def test_shoulders_that_turn_in_the_stance_are_flagged(tools, rng):
 
 def test_lying_is_no_licence_for_any_posture(tools, rng):
     """The cost of lying must not widen the margin: raised arms are still left out."""
-    lift = np.concatenate([np.zeros(100), np.full(100, -0.9)])
+    lift = np.concatenate([np.zeros(100), np.full(100, -0.7)])
     it = tools.make_doll(
         rng,
         n_frames=200,
