@@ -69,6 +69,19 @@ def test_the_mean_of_slow_samples_beats_one_sample(rng, calibration):
     assert (np.abs(joint.rotations - single).max(axis=(1, 2)) == 0).sum() == 1
 
 
+def test_moving_samples_serve_only_where_slow_ones_are_missing(rng):
+    axes, long_axis = np.eye(3)[:2], np.eye(3)[2]
+    twists = np.repeat([0.1, 0.5], 8)
+    rotations = Rotation.from_rotvec(twists[:, None] * long_axis).as_matrix()
+    positions = rotations @ long_axis
+    for slow, expected in (
+        (np.repeat([True, False], 8), 0.1),
+        (np.repeat([True, False], [3, 13]), 0.3),
+    ):
+        rest = robust_rest(rotations, positions, slow, axes, long_axis, RestSettings())
+        assert_allclose(np.arctan2(rest[1, 0], rest[0, 0]), expected, atol=1e-9)
+
+
 def test_a_knee_never_straight_has_a_straight_zero(rng):
     axis, long_axis = np.array([0.0, 0.0, -1.0]), np.array([0.0, -1.0, 0.0])
     bent = rng.uniform(0.6, 1.2, 50)

@@ -79,6 +79,15 @@ def test_the_actors_axes_come_back(performance, solved):
         assert np.rad2deg(joint.axes_uncertainty.max()) < 1.5
 
 
+def test_findings_are_in_the_order_of_the_axes(solved):
+    for side in ("left", "right"):
+        sideways, forward = findings(solved, f"{side}_shoulder")["ranges_deg"]
+        assert forward > 1.5 * sideways  # flexion is proximal, and an arm swings higher forward
+        joint = solved.skeleton.joint(f"{side}_shoulder")
+        halves = findings(solved, f"{side}_shoulder")["halves_disagreement_deg"]
+        assert_allclose(np.rad2deg(joint.axes_uncertainty), np.array(halves) / 2)
+
+
 def test_the_poses_come_back(performance, solved):
     rebuilt = motion_from_parameters(solved)
     assert np.abs(rebuilt.origins - performance.motion.origins).max() < MET

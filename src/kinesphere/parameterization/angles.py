@@ -96,9 +96,10 @@ def two_axis_angles(
     """Return angles about two axes: two circles meet on the joint sphere in at most two points.
 
     Subproblem 2 of Paden & Kahan (Murray, Li & Sastry 1994, section 3.3) in closed form. Where the
-    circles miss, the colatitude about the proximal axis is clipped to what can be reached: the
-    reachable set is a band about that axis, so this is the exact least-squares answer (as in
-    Elias & Wen 2022, arXiv:2211.05737). Which of the two points counts is the branch rule's say.
+    circles miss, the intermediate point is taken in the plane of the axes, which keeps the limb's
+    azimuth about the proximal axis: the reachable set is a band about that axis, so this is the
+    exact least-squares answer (as in Elias & Wen 2022, arXiv:2211.05737). Which of the two points
+    counts is the branch rule's say.
     """
     solutions, sines, excess = two_axis_solutions(
         np.ascontiguousarray(rotations),

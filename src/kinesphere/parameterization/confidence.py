@@ -1,6 +1,6 @@
 """How far movement axes can be trusted: support, range, one axis at a time, agreement of halves."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,6 +41,18 @@ class AxesQuality:
         Halves have twice the variance of the whole, their difference four times.
         """
         return self.halves / 2
+
+    def ordered(self, order: Sequence[int]) -> "AxesQuality":
+        """Return the same for axes in another order."""
+        at = list(order)
+        return AxesQuality(
+            labels=np.argsort(at)[self.labels],
+            ranges=self.ranges[at],
+            conditioning=self.conditioning[at],
+            explained=self.explained,
+            halves=self.halves[at],
+            heights=self.heights[at],
+        )
 
 
 def assess_axes(samples: JointSamples, axes: Array, find: Finder) -> AxesQuality:

@@ -90,7 +90,8 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         assert quality is not None
         source = "movement"
         axes, rest, order = _movement_rest(view, axes, quality, settings)
-        uncertainty = quality.uncertainty[order]
+        quality = quality.ordered(order)
+        uncertainty = quality.uncertainty
     if joint_kind(view.name) is None:
         axes = _first_excursion_positive(view, axes, rest, settings)
     rate = view.samples.rate

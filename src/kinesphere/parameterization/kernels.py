@@ -76,10 +76,10 @@ def two_axis_solutions(
         cz = proximal[0] * p[1] - proximal[1] * p[0]
         colatitude = np.arctan2(np.sqrt(cx * cx + cy * cy + cz * cz), height)
         excess[f] = max(0.0, nearest - colatitude, colatitude - farthest)
-        h = min(max(height, np.cos(farthest)), np.cos(nearest))
-        alpha = (r1 - k * h) / nu
-        beta = (h - k * r1) / nu
+        alpha = (r1 - k * height) / nu
+        beta = (height - k * r1) / nu
         rest_of = (1.0 - alpha * alpha - beta * beta - 2.0 * alpha * beta * k) / nu
+        # circles that miss leave x in the plane of the axes, of the azimuths that come nearest
         gamma = side * np.sqrt(max(0.0, rest_of))
         sines[f] = abs(gamma) * np.sqrt(nu)
         for branch in range(2):
