@@ -252,3 +252,36 @@ def test_a_recording_that_knows_nothing_of_the_model_says_what_is_missing(cmu41)
     stranger = Recording(np.zeros((4, 2, 3)), ("A", "B"), rate=50.0)
     with pytest.raises(BadRecording, match="LFWT, RFWT, LBWT, RBWT; the recording shows none"):
         fit_skeleton(stranger, built_in_model("cmu41"))
+
+
+def without(model, label):
+    """Return the model, the marker gone from its limb."""
+    segments = tuple(
+        replace(segment, markers=tuple(m for m in segment.markers if m != label))
+        for segment in model.segments
+    )
+    return replace(model, segments=segments, mirror=())
+
+
+def test_a_marker_the_model_does_not_know_joins_the_limb_it_is_rigid_with(bodies):
+    limb = next(s for s in bodies.model.segments if len(s.markers) > 3 and s.name != "trunk")
+    stranger = limb.markers[-1]
+    model = without(bodies.model, stranger)
+    motion = fit_skeleton(bodies.recording, model)
+    assert motion.history[-1].findings["adopted_markers"] == {stranger: limb.name}
+    assert set(motion.skeleton.limb(limb.name).markers) == set(limb.markers)
+    alone = fit_skeleton(bodies.recording, model, SkeletonSettings(adopt_markers=False))
+    assert stranger not in alone.skeleton.limb(limb.name).markers
+
+
+def test_nobody_adopts_a_marker_that_two_limbs_could_claim_or_none(cmu41, rng):
+    """Pelvis and trunk of this actor are one piece; a wanderer belongs nowhere."""
+    recording = replace(
+        cmu41.recording,
+        labels=(*cmu41.recording.labels, "WILD"),
+        markers=np.concatenate(
+            [cmu41.recording.markers, rng.normal(size=(cmu41.recording.n_frames, 1, 3))], axis=1
+        ),
+    )
+    motion = fit_skeleton(recording, without(built_in_model("cmu41"), "T10"))
+    assert motion.history[-1].findings["adopted_markers"] == {}

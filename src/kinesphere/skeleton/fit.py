@@ -4,6 +4,7 @@ import numpy as np
 
 import kinesphere
 from kinesphere.data import (
+    Json,
     Motion,
     Recording,
     Skeleton,
@@ -12,6 +13,7 @@ from kinesphere.data import (
     settings_as_json,
 )
 from kinesphere.errors import BadRecording
+from kinesphere.skeleton.adoption import adopt, find_adoptions
 from kinesphere.skeleton.chain import measure_chain
 from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.report import describe_joint, describe_limb
@@ -63,6 +65,15 @@ def fit_skeleton(
     markers = {label: recording.markers[:, i] for i, label in enumerate(recording.labels)}
     sample = {label: m[frames] for label, m in markers.items()}
     bodies, joints = measure_chain(tree, model, sample, settings)
+    adopted = (
+        find_adoptions(model, bodies, sample, settings.adopt_mm * 1e-3)
+        if settings.adopt_markers
+        else {}
+    )
+    if adopted:
+        model = adopt(model, adopted)
+        tree = find_tree(recording, model)
+        bodies, joints = measure_chain(tree, model, sample, settings)
     poses = solve_poses(tree, bodies, joints, markers, recording.rate, settings)
     described = {
         child: describe_joint(j, poses[j.model.parent], poses[child], bodies[child], settings)
@@ -71,7 +82,23 @@ def fit_skeleton(
     step = Step(
         name="skeleton",
         settings=settings_as_json(settings),
-        findings={"model": model.name, "frames_measured_on": len(frames)},
+        findings={
+            "model": model.name,
+            "frames_measured_on": len(frames),
+            "adopted_markers": dict(adopted),
+            "joints": {
+                joint.name: {
+                    "observability": joint.observability,
+                    "residual_mm": _number(joint.residual * 1e3),
+                    "range_of_motion_deg": _number(np.rad2deg(joint.range_of_motion)),
+                    "uncertainty_mm": _number(
+                        np.sqrt(np.linalg.eigvalsh(joint.covariance)[-1]) * 1e3
+                    ),
+                    "note": joint.note,
+                }
+                for joint in described.values()
+            },
+        },
         warnings=tree.warnings,
         version=kinesphere.__version__,
     )
@@ -90,3 +117,8 @@ def fit_skeleton(
         first_frame=recording.first_frame,
         history=history,
     )
+
+
+def _number(value: float) -> Json:
+    """Return a number as JSON holds it, to three decimals; null for NaN."""
+    return round(float(value), 3) if np.isfinite(value) else None
