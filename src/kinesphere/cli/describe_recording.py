@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from kinesphere.cli.console import print_pairs, print_table, print_title, print_warnings, stdout
+from kinesphere.cli.stages import source_in_words
 from kinesphere.data import Json, Recording, TopologicalModel
 from kinesphere.errors import KinesphereError
 from kinesphere.labelling import (
@@ -147,7 +148,7 @@ def _up(
     upright = step.findings.get("upright_share")
     found |= {"used": used, "from": source, "body": upright, "warnings": list(step.warnings)}
     said = f"the file says {recording.up}" if recording.up else "the file does not say"
-    text = f"{used}, from the {source}: {said}"
+    text = f"{used}, {source_in_words(source)}: {said}"
     if isinstance(upright, dict):
         shares = {way: share for way, share in upright.items() if isinstance(share, float)}
         if shares:

@@ -49,8 +49,13 @@ def _labelling(found: dict[str, Any], summary: dict[str, Any]) -> str:
 
 
 def _orientation(found: dict[str, Any], _: dict[str, Any]) -> str:
-    text = f"up was {found.get('up')}, from the {found.get('up_from')}"
+    text = f"up was {found.get('up')}, {source_in_words(found.get('up_from'))}"
     return text + ("; mirrored, turned right" if found.get("mirrored") else "")
+
+
+def source_in_words(source: object) -> str:
+    """Return what told which way is up: the file, the body, the user, or nothing."""
+    return "assumed" if source in (None, "assumed") else f"from the {source}"
 
 
 def _skeleton(_: dict[str, Any], summary: dict[str, Any]) -> str:
