@@ -65,6 +65,21 @@ def test_twist_does_not_tilt_the_axes(rng, calibration, method):
     assert joint.axis_errors(found(joint, method, refine=False)).max() > WITHOUT_NOISE
 
 
+@pytest.mark.parametrize("method", ANY_CONE)
+def test_one_movement_may_be_done_in_several_postures(rng, method):
+    axis, other, long_axis = np.eye(3)
+    swings = 0.7 * np.sin(np.linspace(0, 2 * np.pi, 60))
+    parts = [
+        Rotation.from_rotvec(swings[:, None] * axis) * Rotation.from_rotvec(posture * other)
+        for posture in (-0.5, 0.0, 0.8)
+    ]
+    rotations = np.concatenate([part.as_matrix() for part in parts])
+    phases = ((0, 60), (60, 120), (120, 180))
+    samples = JointSamples(rotations, rotations @ long_axis, phases, 50.0, long_axis)
+    axes = find_axes(samples, 1, settings(method))
+    assert abs(axes[0] @ axis) > np.cos(np.deg2rad(0.01))
+
+
 def test_less_noise_finds_better_axes(calibration):
     medians = []
     for correlated in (2.0, 1.0, 0.5):

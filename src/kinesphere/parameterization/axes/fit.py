@@ -57,7 +57,7 @@ def pooled_axes(parts: Array, directions: Array, weights: Array, n_axes: int) ->
     Parameters
     ----------
     parts : (n, 3, 3)
-        Symmetric, noise taken off.
+        Symmetric; their eigenvectors count.
     directions : (n, 3)
         Main direction of each part, any sign.
     weights : (n,)

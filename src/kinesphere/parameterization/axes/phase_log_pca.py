@@ -13,9 +13,10 @@ def phase_log_pca(samples: JointSamples, n_axes: int, settings: AxesSettings) ->
 
     Rotations are taken relative to the mean of their phase; their logarithms lie along the axis
     the phase moves about, whatever angle the limb makes with it (a great circle is not assumed).
-    Phases are told apart by their main axis, isotropic noise is taken off their scatter, and
-    each axis is the main eigenvector of what its phases hold together: the symmetric axis of
-    rotation approach of Ehrig et al. 2007 (doi:10.1016/j.jbiomech.2006.10.026), made local.
+    Phases are told apart by their main axis, weighed by what they hold above isotropic noise, and
+    each axis is the main eigenvector of the scatter of its phases together (isotropic noise
+    does not turn it): the symmetric axis of rotation approach of Ehrig et al. 2007
+    (doi:10.1016/j.jbiomech.2006.10.026), made local.
 
     Parameters
     ----------
@@ -35,5 +36,4 @@ def phase_log_pca(samples: JointSamples, n_axes: int, settings: AxesSettings) ->
         return np.empty((0, 3))
     found = phase_scatter(samples)
     noise = found.values[:, 1:].mean(axis=1)
-    parts = found.scatter - noise[:, None, None] * np.eye(3)
-    return pooled_axes(parts, found.axes, found.values[:, 0] - noise, n_axes)
+    return pooled_axes(found.scatter, found.axes, found.values[:, 0] - noise, n_axes)

@@ -26,7 +26,7 @@ def sara(samples: JointSamples, n_axes: int, settings: AxesSettings) -> Array:
     for i, (start, stop) in enumerate(samples.phases):
         n = stop - start
         b = samples.rotations[start:stop].sum(axis=0)
-        parts[i] = b @ b.T / n - n * np.eye(3)  # n (C − I)
+        parts[i] = b @ b.T / n
     values, vectors = np.linalg.eigh(parts)
     # what the rotations spread across the axis, less what they spread about it
     weights = np.maximum(values[:, 2] - values[:, :2].mean(axis=1), 0)
