@@ -91,6 +91,7 @@ def test_places_that_are_no_files(call, tmp_path):
         (["solve", "x.c3d"], ["Missing option '-o'"]),
         (["info", "x.c3d", "--jsn"], ["--jsn"]),
         (["demo", "--seed", "one"], ["--seed"]),
+        (["demo", "--set", "axes.method=magic"], ["axes.method is 'magic'"]),
         (["settings", "axis"], ["no stage is called 'axis'", "axes"]),
         (["settings", "--set", "axes.metod=pca"], ["did you mean method?"]),
         (["settings", "--set", "axes.cell=-1"], ["axes.cell is -1.0; it must be at least"]),

@@ -6,7 +6,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinesphere.cli.options import JsonOption
+from kinesphere.cli.options import (
+    JsonOption,
+    SetOption,
+    SettingsOption,
+    settings_from_options,
+)
 
 if TYPE_CHECKING:
     from kinesphere.synthetic import TruthRow
@@ -19,6 +24,8 @@ def demo(
         Path, typer.Option("-o", "--output", metavar="DIR", help="Folder for everything found.")
     ] = FOLDER,
     seed: Annotated[int, typer.Option("--seed", help="Which actor.", min=0)] = 1,
+    assignments: SetOption = None,
+    settings_file: SettingsOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Solve a synthetic actor and compare with the truth.
@@ -38,6 +45,7 @@ def demo(
     from kinesphere.cli.files import write_solved
     from kinesphere.synthetic import compare_with_truth, make_performance
 
+    settings = settings_from_options(assignments, settings_file)
     start = time.perf_counter()
     with progress_bar(quiet=as_json) as progress:
         progress("actor", 0, 1)
@@ -46,6 +54,7 @@ def demo(
             performance.recording,
             performance.model,
             calibration=performance.calibration,
+            settings=settings,
             progress=progress,
         )
         progress("truth", len(pipeline.STAGES), len(pipeline.STAGES) + 2)
