@@ -16,7 +16,7 @@ from kinesphere.report.scene import scene_from_solution
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
 from kinesphere.report.wording import unique
 
-_SCRIPTS = ("unpack.js", "space.js", "player.js", "curves.js", "heat.js", "page.js")
+_SCRIPTS = ("unpack.js", "space.js", "figure.js", "player.js", "curves.js", "heat.js", "page.js")
 
 
 def report_html(solution: Solution, title: str = "") -> str:
