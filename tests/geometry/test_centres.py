@@ -95,6 +95,13 @@ def test_a_shaky_frame_does_not_draw_the_centre_to_its_axis(rng):
     assert abs(drawn[shaky]) < 0.5 * drawn[1e-6]
 
 
+def test_noise_about_a_hinge_is_not_taken_for_motion_along_it(rng):
+    fit = fit_centre(view_of(rng, (1, 0, 0), noise=4 * NOISE), CENTRE, SPREAD)
+    deviations = np.sqrt(np.diag(fit.data_covariance))
+    assert deviations[0] > 0.1  # m; the noise alone would make it a few centimetres
+    assert deviations[1:].max() < SPREAD
+
+
 def test_outliers_hardly_move_the_centre(rng):
     view = view_of(rng, (1, 1, 1), noise=NOISE)
     points = view.points.copy()

@@ -4,11 +4,15 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from kinesphere.data import JointModel
 from kinesphere.errors import BadSetting
+from kinesphere.geometry.centres import CentreFit
 from kinesphere.skeleton import SkeletonSettings
 from kinesphere.skeleton.averages import mean_seen, median_seen
+from kinesphere.skeleton.body import measure_shape
+from kinesphere.skeleton.chain import MeasuredJoint, joint_noise
 from kinesphere.skeleton.poses import borrowing
-from kinesphere.skeleton.report import range_of_motion
+from kinesphere.skeleton.report import range_of_motion, verdict_on
 from kinesphere.skeleton.sampling import spread_frames
 
 MARKERS = 4
@@ -59,3 +63,39 @@ def test_averages_leave_out_what_is_not_seen():
 def test_settings_refuse_what_makes_no_sense():
     with pytest.raises(BadSetting, match=r"soft_tissue is 0\.5; it must be at least 1\.0"):
         SkeletonSettings(soft_tissue=0.5)
+
+
+@pytest.mark.parametrize(
+    ("deviations_mm", "spread_mm", "range_deg", "expected"),
+    [
+        ((1, 2, 3), 10, 60, "determined"),
+        ((1, 2, 30), 50, 60, "hinge"),  # worse than is useful
+        ((1, 2, 15), 10, 60, "hinge"),  # the expectation knows better
+        ((1, 30, 30), 50, 60, "undetermined"),
+        ((1, 2, 3), 10, 9, "undetermined"),  # hardly moved
+    ],
+)
+def test_the_verdict_weighs_motion_against_use_and_expectation(
+    deviations_mm, spread_mm, range_deg, expected
+):
+    data = np.diag(np.array(deviations_mm) * 1e-3) ** 2
+    prior = np.eye(3) / (spread_mm * 1e-3) ** 2
+    fit = CentreFit(np.zeros(3), 1e-3, data, prior, np.linalg.inv(np.linalg.inv(data) + prior), 9)
+    measured = MeasuredJoint(
+        JointModel("left_hip", "pelvis", "left_thigh"), fit, np.zeros(3), "book"
+    )
+    found, note = verdict_on(measured, np.deg2rad(range_deg), SkeletonSettings())
+    assert found == expected
+    assert note.startswith(f"range of motion {range_deg}°")
+    assert ("book" in note) == (expected != "determined")
+
+
+def test_a_joint_does_not_stray_because_a_small_plate_shakes(rng):
+    plate = np.array([[0, 0, 0], [0.05, 0, 0], [0, 0.05, 0], [0.05, 0.04, 0.01]])
+    far, n = np.array([0.02, 0.3, 0.0]), 400
+    turns = Rotation.random(n, rng=rng).as_matrix()
+    points = plate @ np.swapaxes(turns, 1, 2) + rng.normal(scale=1e-3, size=(n, 4, 3))
+    steady, loose = turns @ far, turns @ far + rng.normal(scale=0.02, size=(n, 3))
+    solid = measure_shape(points, 0.003, 0.005)
+    assert joint_noise(solid, steady, 1e-4) < 0.002  # seen from the plate it strays by 4 mm
+    assert joint_noise(solid, loose, 1e-4) == pytest.approx(0.02, rel=0.2)

@@ -121,7 +121,7 @@ def _measure_limb(
             with_joint,
             outlier,
             min_spread,
-            noise=np.append(noise, _joint_noise(solid, centre, fit.noise)),
+            noise=np.append(noise, joint_noise(solid, centre, fit.noise)),
         )
     if found is None:
         return measure_line(joint, parent, tree, sample, centre, settings), measured
@@ -148,7 +148,7 @@ def _turning(solid: tuple[Array, Array, RigidFit], parent: Body) -> Turning:
     )
 
 
-def _joint_noise(solid: tuple[Array, Array, RigidFit], centre: Array, least: float) -> float:
+def joint_noise(solid: tuple[Array, Array, RigidFit], centre: Array, least: float) -> float:
     """Return how far, in m, a joint strays in a limb beyond what the limb's own pose explains."""
     shape, noise, pose = solid
     local = into_frame(pose.rotations, pose.shifts, centre[:, None])

@@ -1,9 +1,12 @@
 """A labelled recording in, a measured skeleton and its motion out."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 import kinesphere
 from kinesphere.data import (
+    Joint,
     Json,
     Motion,
     Recording,
@@ -99,7 +102,7 @@ def fit_skeleton(
                 for joint in described.values()
             },
         },
-        warnings=tree.warnings,
+        warnings=(*tree.warnings, *_open_centres(described.values())),
         version=kinesphere.__version__,
     )
     limbs = tuple(describe_limb(bodies[limb], joints) for limb in tree.limbs)
@@ -122,3 +125,14 @@ def fit_skeleton(
 def _number(value: float) -> Json:
     """Return a number as JSON holds it, to three decimals; null for NaN."""
     return round(float(value), 3) if np.isfinite(value) else None
+
+
+def _open_centres(joints: Iterable[Joint]) -> tuple[str, ...]:
+    """Return the warning that names the joints whose centres the motion does not tell."""
+    names = [joint.name for joint in joints if joint.observability == "undetermined"]
+    if not names:
+        return ()
+    return (
+        f"the motion does not tell the centre of {', '.join(names)}; "
+        "it is where the model's landmarks expect it",
+    )

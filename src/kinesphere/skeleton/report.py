@@ -48,7 +48,7 @@ def describe_joint(
     gap = np.linalg.norm(parent.carry(fit.centre) - child.carry(body.centre), axis=1)
     known = gap[np.isfinite(gap)]
     moved = range_of_motion(np.swapaxes(parent.rotations, 1, 2) @ child.rotations)
-    verdict, note = _verdict(measured, moved, settings)
+    verdict, note = verdict_on(measured, moved, settings)
     return Joint(
         name=model.name,
         parent=model.parent,
@@ -63,9 +63,16 @@ def describe_joint(
     )
 
 
-def _verdict(
+def verdict_on(
     measured: MeasuredJoint, moved: float, settings: SkeletonSettings
 ) -> tuple[Observability, str]:
+    """Return how well the motion tells a centre, and the note that says so to a person.
+
+    Parameters
+    ----------
+    moved
+        rad, range of motion.
+    """
     fit = measured.fit
     inflate = max(1.0, (VERDICT_NOISE / max(fit.noise, 1e-9)) ** 2)
     deviations = np.sqrt(np.linalg.eigvalsh(fit.data_covariance * inflate))
