@@ -289,3 +289,13 @@ def test_nobody_adopts_a_marker_that_two_limbs_could_claim_or_none(cmu41, rng):
     )
     motion = fit_skeleton(recording, without(built_in_model("cmu41"), "T10"))
     assert motion.history[-1].findings["adopted_markers"] == {}
+
+
+def test_a_root_of_two_markers_leans_on_the_joint_it_shares(cmu41, cmu41_motion):
+    """Two waist markers and the lumbar joint, as the trunk carries it, make a pelvis."""
+    gap = slice(100, 140)
+    motion = fit_skeleton(hide(cmu41.recording, gap, ("LFWT", "RFWT")), built_in_model("cmu41"))
+    assert (motion.flags[gap, 0] == PoseFlag.JOINT_AIDED).all()
+    hips = [motion.skeleton.joint_names.index(f"{side}_hip") for side in ("left", "right")]
+    off = motion.joint_centres()[gap][:, hips] - cmu41_motion.joint_centres()[gap][:, hips]
+    assert np.abs(off).max() < EXACT

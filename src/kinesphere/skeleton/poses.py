@@ -56,6 +56,7 @@ def fit_poses(
     joints: tuple[Neighbour, ...],
     helpers: tuple[Neighbour, ...],
     min_spread: float,
+    measured: Mask | None = None,
 ) -> Poses:
     """Fit the limb's pose to its markers and joint centres, where they leave no freedom.
 
@@ -71,10 +72,13 @@ def fit_poses(
         Centres that only stand in where the others do not suffice.
     min_spread
         m, as `kinesphere.geometry.rigid.fit_rigid` takes it.
+    measured : (n_frames,), optional
+        Where the limb's own markers suffice; found out if nobody knows yet.
     """
     poses = no_poses(len(own))
-    measured = fit_rigid(body.shape, own, min_spread=min_spread).fitted
-    for points in (joints, (*joints, *helpers)):
+    if measured is None and joints:
+        measured = fit_rigid(body.shape, own, min_spread=min_spread).fitted
+    for points in (joints, (*joints, *helpers)) if helpers else (joints,):
         missing = poses.flags == PoseFlag.UNSEEN
         if not missing.any():
             break
@@ -85,7 +89,8 @@ def fit_poses(
         at = np.flatnonzero(missing)[fit.fitted]
         poses.rotations[at] = fit.rotations[fit.fitted]
         poses.shifts[at] = fit.shifts[fit.fitted]
-        poses.flags[at] = np.where(measured[at], PoseFlag.MEASURED, PoseFlag.JOINT_AIDED)
+        alone = True if measured is None else measured[at]
+        poses.flags[at] = np.where(alone, PoseFlag.MEASURED, PoseFlag.JOINT_AIDED)
     return poses
 
 

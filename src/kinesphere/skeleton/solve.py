@@ -56,7 +56,8 @@ def solve_poses(
         if body.twist_open:
             poses[limb] = no_poses(len(own[limb]))
         else:
-            poses[limb] = fit_poses(body, own[limb], near, helpers, min_spread)
+            measured = alone[limb].flags == PoseFlag.MEASURED
+            poses[limb] = fit_poses(body, own[limb], near, helpers, min_spread, measured)
             bridge(poses[limb], body, parent, centre, longest)
         if parent is not None and centre is not None:
             flexed = np.deg2rad(settings.flexed_deg)
