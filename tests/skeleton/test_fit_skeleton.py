@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from kinesphere.data import PoseFlag, Recording
-from kinesphere.errors import BadRecording, DegenerateMotion
+from kinesphere.errors import BadRecording, DegenerateMotion, KinesphereError
 from kinesphere.labelling import built_in_model
 from kinesphere.skeleton import SkeletonSettings, fit_skeleton
 
@@ -299,3 +299,30 @@ def test_a_root_of_two_markers_leans_on_the_joint_it_shares(cmu41, cmu41_motion)
     hips = [motion.skeleton.joint_names.index(f"{side}_hip") for side in ("left", "right")]
     off = motion.joint_centres()[gap][:, hips] - cmu41_motion.joint_centres()[gap][:, hips]
     assert np.abs(off).max() < EXACT
+
+
+SPOILT = {
+    "sparse": lambda x, r: np.where(r.random((*x.shape[:2], 1)) < 0.4, np.nan, x),
+    "markers_gone": lambda x, r: np.where(r.random((1, x.shape[1], 1)) < 0.3, np.nan, x),
+    "coincident": lambda x, _: x[:, np.minimum(np.arange(x.shape[1]), 30)],
+    "ghosts": lambda x, r: x + 3.0 * (r.random((*x.shape[:2], 1)) < 0.02),
+    "few_frames": lambda x, r: np.where(r.random((4, x.shape[1], 1)) < 0.2, np.nan, x[:4]),
+    "far_away": lambda x, _: x + 1e3,
+    "one_point": lambda x, _: np.repeat(x[:, :1], x.shape[1], axis=1),
+}
+
+
+@pytest.mark.parametrize("how", SPOILT)
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_bad_input_gives_a_clear_error_or_a_finite_flagged_result(cmu41, how, seed):
+    markers = SPOILT[how](cmu41.recording.markers[::12], np.random.default_rng(seed))
+    try:
+        motion = fit_skeleton(changed(cmu41.recording, markers), built_in_model("cmu41"))
+    except KinesphereError:
+        assert how in ("sparse", "markers_gone", "few_frames", "one_point")
+        return
+    unseen = motion.flags == PoseFlag.UNSEEN
+    assert np.isfinite(motion.rotations[~unseen]).all()
+    assert np.isnan(motion.rotations[unseen]).all()
+    for joint in motion.skeleton.joints:
+        assert np.isfinite(joint.centre_in_parent).all()

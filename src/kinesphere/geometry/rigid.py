@@ -170,6 +170,8 @@ def fit_shape(
             mean = (share[..., None] * np.where(known[..., None], aligned, 0.0)).sum(0) / total[
                 :, None
             ]
+        if not np.isfinite(mean).all(axis=1).any():
+            return None  # what seemed a shape fits no frame
         mean -= _centre(mean, w0)
         change = np.nanmax(np.abs(mean - shape)) if np.isfinite(mean - shape).any() else np.inf
         new = bool((np.isfinite(mean) & ~np.isfinite(shape)).any())
@@ -237,6 +239,7 @@ def pose_covariance(shape: Array, noise: Array) -> Array:
     Parameters
     ----------
     shape : (n_points, 3) m
+        A point that is NaN tells nothing.
     noise : (n_points,) m, standard deviation of each point in every direction.
 
     Returns
@@ -245,6 +248,8 @@ def pose_covariance(shape: Array, noise: Array) -> Array:
         Of a small turn (rad) about the shape's origin and a shift (m), both in the shape's frame;
         the inverse of the weighted least-squares normal matrix.
     """
+    known = np.isfinite(shape).all(axis=1)
+    shape, noise = shape[known], noise[known]
     moved = np.concatenate([-hat(shape), np.broadcast_to(np.eye(3), (len(shape), 3, 3))], axis=2)
     information = np.einsum("pki,p,pkj->ij", moved, 1 / noise**2, moved)
     covariance: Array = np.linalg.pinv(information, hermitian=True, rcond=1e-12)

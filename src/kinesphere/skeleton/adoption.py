@@ -6,7 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.rigid import into_frame
-from kinesphere.skeleton.averages import median_seen
+from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.body import Body, robust_rms, seen
 
 CLEARLY = 0.6
@@ -55,7 +55,7 @@ def _straying(body: Body, marker: Array) -> float:
     if seen(local).mean() < SEEN:
         return np.inf
     usual = median_seen(local)
-    if np.linalg.norm(usual - body.shape.mean(axis=0)) > NEAR:
+    if np.linalg.norm(usual - mean_seen(body.shape)) > NEAR:
         return np.inf
     return float(robust_rms(np.linalg.norm(local - usual, axis=2))[0])
 

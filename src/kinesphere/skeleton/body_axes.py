@@ -32,7 +32,8 @@ def right_from_pairs(body: Body, model: TopologicalModel) -> Array | None:
         for left, right in model.mirror
         if left in at and right in at
     ]
-    return unit(np.sum(across, axis=0)) if across else None
+    right = unit(np.sum(across, axis=0)) if across else np.full(3, np.nan)
+    return right if np.isfinite(right).all() else None
 
 
 def right_from_parent(body: Body, parent: Body) -> Array | None:

@@ -94,9 +94,7 @@ def fit_skeleton(
                     "observability": joint.observability,
                     "residual_mm": _number(joint.residual * 1e3),
                     "range_of_motion_deg": _number(np.rad2deg(joint.range_of_motion)),
-                    "uncertainty_mm": _number(
-                        np.sqrt(np.linalg.eigvalsh(joint.covariance)[-1]) * 1e3
-                    ),
+                    "uncertainty_mm": _number(np.sqrt(np.trace(joint.covariance)) * 1e3),
                     "note": joint.note,
                 }
                 for joint in described.values()

@@ -35,7 +35,7 @@ def expected_centre(
             return *found, landmark.source or "landmark"
     cloud = np.stack([sample[label] for label in child_labels], axis=1)
     child = median_seen(mean_seen(into_frame(parent.rotations, parent.shifts, cloud), axis=1))
-    own = parent.shape.mean(axis=0)
+    own = np.nan_to_num(mean_seen(parent.shape))
     if not np.isfinite(child).all():
         child = own
     spread = max(NO_LANDMARK_SHARE * float(np.linalg.norm(child - own)), 0.02)
@@ -78,4 +78,4 @@ def inward_sign(joint: JointModel, point: Array, parent: Body, right: Array) -> 
     for name in (joint.child, joint.name):
         if name.startswith(("left_", "right_")):
             return 1.0 if name.startswith("left_") else -1.0
-    return -1.0 if (point - parent.shape.mean(axis=0)) @ right > 0 else 1.0
+    return -1.0 if (point - mean_seen(parent.shape)) @ right > 0 else 1.0

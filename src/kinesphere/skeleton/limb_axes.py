@@ -55,7 +55,7 @@ def find_axes(
             body.up = beside(body.up, pairs)
         return
     arms = body.shape - body.centre
-    far = int(np.linalg.norm(arms, axis=1).argmax())
+    far = int(np.nan_to_num(np.linalg.norm(arms, axis=1), nan=-1.0).argmax())
     long = unit(arms[far])
     body.up, right = -long, right_from_parent(body, parent)
     if body.borrow is not None:
@@ -66,4 +66,6 @@ def find_axes(
         normals = next_normals(body.name, towards, own[:, far], tree, sample)
         hinge = right_from_hinge(body, flexed_normals(normals, np.deg2rad(settings.flexed_deg)))
         right = right if hinge is None else hinge
+    if not np.isfinite(long).all():
+        body.up = right = None
     body.right = None if right is None else beside(right, long)

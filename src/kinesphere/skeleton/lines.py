@@ -26,7 +26,8 @@ def measure_line(
     labels = tree.markers[joint.child]
     own = cloud(labels, sample)
     arms = own - centre[:, None]
-    far = int(np.nanargmax(median_seen(np.linalg.norm(arms, axis=2))))
+    reach = median_seen(np.linalg.norm(arms, axis=2))
+    far = int(np.nan_to_num(reach, nan=-1.0).argmax())
     towards = unit(arms[:, far])
     by_parent = (np.swapaxes(parent.rotations, 1, 2) @ towards[..., None])[..., 0]
     here = unit(mean_seen(by_parent))

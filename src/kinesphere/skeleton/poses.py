@@ -122,7 +122,8 @@ def aim(
     """
     assert body.centre is not None  # only the root has none, and it is never aimed
     arms = body.shape - body.centre
-    order = np.argsort(-np.linalg.norm(arms, axis=1))
+    reach = np.nan_to_num(np.linalg.norm(arms, axis=1))
+    order = [m for m in np.argsort(-reach) if reach[m] > 0]
     for m in order:  # the farthest marker that is seen tells the direction best
         here = unit(arms[m])
         towards = unit(own[:, m] - centre)

@@ -75,7 +75,7 @@ def verdict_on(
     """
     fit = measured.fit
     inflate = max(1.0, (VERDICT_NOISE / max(fit.noise, 1e-9)) ** 2)
-    deviations = np.sqrt(np.linalg.eigvalsh(fit.data_covariance * inflate))
+    deviations = np.sqrt(np.maximum(np.linalg.eigvalsh(fit.data_covariance * inflate), 0.0))
     # open: worse known than is useful, or known better from the expectation than from the motion
     told = np.linalg.eigvals(fit.data_covariance @ fit.prior).real
     weak = max(int((deviations > settings.undetermined_mm * 1e-3).sum()), int((told > 1).sum()))
@@ -119,7 +119,7 @@ def describe_limb(body: Body, joints: dict[str, MeasuredJoint]) -> Limb:
         far = np.mean(list(ends.values()), axis=0)
     else:
         arms = body.shape - body.centre
-        far = body.shape[int(np.linalg.norm(arms, axis=1).argmax())]
+        far = body.shape[int(np.nan_to_num(np.linalg.norm(arms, axis=1), nan=-1.0).argmax())]
     span = far - body.centre
     length = float(np.linalg.norm(span))
     return _limb(body, length, unit(span) if length > 1e-9 else np.array([0.0, 1.0, 0.0]))

@@ -61,7 +61,8 @@ def solve_poses(
             bridge(poses[limb], body, parent, centre, longest)
         if parent is not None and centre is not None:
             flexed = np.deg2rad(settings.flexed_deg)
-            far = int(np.linalg.norm(body.shape - _centre(body), axis=1).argmax())
+            reach = np.linalg.norm(body.shape - _centre(body), axis=1)
+            far = int(np.nan_to_num(reach, nan=-1.0).argmax())
             end = own[limb][:, far]
             normals = next_normals(limb, unit(end - centre), end, tree, markers)
             aim(body, own[limb], centre, parent, normals, flexed, poses[limb])
