@@ -131,7 +131,8 @@ class Correspondence:
     @property
     def tilt_deg(self) -> float:
         """Angle in deg between true up and the solution's up."""
-        return float(np.rad2deg(np.arccos(np.clip(self.world_turn[1, 1], -1, 1))))
+        up = self.world_turn[:, 1]
+        return float(np.rad2deg(np.arctan2(np.hypot(up[0], up[2]), up[1])))
 
     def into_truth(self, points: Array) -> Array:
         """Return points of the solution's world in the true world, (..., 3) m."""
