@@ -6,7 +6,12 @@ import sys
 import pytest
 
 from kinesphere.errors import UnwritableFile
-from kinesphere.io import replacing, replacing_directory
+from kinesphere.io import (
+    check_directory_place,
+    check_file_place,
+    replacing,
+    replacing_directory,
+)
 
 
 class Failure(Exception):
@@ -64,6 +69,29 @@ def test_places_that_cannot_be_written_to(tmp_path):
     ):
         with pytest.raises(UnwritableFile, match=message), replacing(path):
             pytest.fail("nothing may be done here")
+        with pytest.raises(UnwritableFile, match=message):
+            check_file_place(path)
+
+
+def test_asking_writes_nothing(tmp_path):
+    (tmp_path / "file").touch()
+    (tmp_path / "empty").mkdir()
+    for name in ("file", "new"):
+        check_file_place(tmp_path / name)
+    for name in ("empty", "new", "deep/er"):
+        check_directory_place(tmp_path / name, ours)
+    assert names(tmp_path) == ["empty", "file"]
+
+
+@pytest.mark.skipif(
+    sys.platform == "win32" or os.geteuid() == 0, reason="no such permissions, or all of them"
+)
+def test_asking_finds_a_closed_folder(tmp_path):
+    tmp_path.chmod(0o500)
+    with pytest.raises(UnwritableFile, match="ermission"):
+        check_file_place(tmp_path / "new")
+    with pytest.raises(UnwritableFile, match="ermission"):
+        check_directory_place(tmp_path / "deep" / "er", ours)
 
 
 def ours(folder):

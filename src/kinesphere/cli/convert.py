@@ -26,9 +26,11 @@ def convert(
     Example: [bold]kinesphere convert walk.c3d walk.trc[/bold]
     """
     from kinesphere.cli.console import print_json, print_warnings, stdout
+    from kinesphere.cli.files import check_target
     from kinesphere.data import Solution
     from kinesphere.io import read, write
 
+    check_target(target)
     found = read(source)
     if isinstance(found, Solution):
         found = part_for(found, target)

@@ -42,10 +42,12 @@ def demo(
     from kinesphere import pipeline
     from kinesphere.cli.console import print_json, progress_bar, stdout
     from kinesphere.cli.describe_solution import describe_solution, show_solution
-    from kinesphere.cli.files import write_solved
+    from kinesphere.cli.files import REPORT, write_solved
+    from kinesphere.io import check_solution_place
     from kinesphere.synthetic import compare_with_truth, make_performance
 
     settings = settings_from_options(assignments, settings_file)
+    check_solution_place(output, [REPORT])
     start = time.perf_counter()
     with progress_bar(quiet=as_json) as progress:
         progress("actor", 0, 1)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from kinesphere.cli.options import BadArgument
 from kinesphere.data import Recording, Solution
-from kinesphere.io import read, write_solution
+from kinesphere.io import check_file_place, check_solution_place, read, write_solution
 from kinesphere.report import report_html
 
 REPORT = "report.html"
@@ -26,6 +26,14 @@ def read_solved(path: Path) -> Solution:
     if not isinstance(found, Solution):
         raise BadArgument(f"{path} holds a {type(found).__name__}; a solved folder is wanted")
     return found
+
+
+def check_target(target: Path) -> None:
+    """Raise unless a file, or for a name without suffix a solved folder, can be written there."""
+    if target.suffix and not target.is_dir():
+        check_file_place(target)
+    else:
+        check_solution_place(target, [REPORT])
 
 
 def write_solved(solution: Solution, directory: Path, title: str) -> Path:

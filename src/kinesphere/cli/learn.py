@@ -33,9 +33,10 @@ def model(
     from kinesphere.cli.console import print_json, progress_bar, stdout
     from kinesphere.cli.describe_model import describe_model, show_model
     from kinesphere.cli.files import read_recording
-    from kinesphere.io import read_segments, write_model
+    from kinesphere.io import check_file_place, read_segments, write_model
     from kinesphere.skeleton import learn_model
 
+    check_file_place(output)
     with progress_bar(quiet=as_json) as progress:
         groups = read_segments(segments) if segments is not None else None
         recordings = []

@@ -10,6 +10,7 @@ from kinesphere.errors import KinesphereError
 
 FAILED = 2
 _INTERRUPTED = 130  # what typer hands back after Ctrl-C
+_CLOSED_PIPE = 128 + 13  # SIGPIPE
 
 
 def main() -> NoReturn:
@@ -26,7 +27,10 @@ def main() -> NoReturn:
 
 
 def run(words: list[str], *, debug: bool = False) -> int:
-    """Run one command and return the exit code: 0, or 2 after one line on stderr."""
+    """Run one command and return the exit code: 0, or 2 after one line on stderr.
+
+    Who stops reading, as ``head`` does, is told nothing: 141, as the shell has it for all programs.
+    """
     from kinesphere.cli.app import app
 
     try:
@@ -35,16 +39,20 @@ def run(words: list[str], *, debug: bool = False) -> int:
         if code == _INTERRUPTED:
             raise KeyboardInterrupt
     except SystemExit as end:  # typer's own way out when nobody reads stdout any more
-        return _failed("whoever read the output stopped reading") if end.code else 0
+        return _nobody_reads() if end.code else 0
     except BrokenPipeError:
-        # Python flushes stdout once more at exit and would complain again.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return _failed("whoever read the output stopped reading")
+        return _nobody_reads()
     except (Exception, KeyboardInterrupt) as error:
         if debug:
             traceback.print_exc()
         return _failed(line_from_error(error))
     return int(code) if isinstance(code, int) else 0
+
+
+def _nobody_reads() -> int:
+    # Python flushes stdout once more at exit and would complain.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return _CLOSED_PIPE
 
 
 def line_from_error(error: BaseException) -> str:

@@ -75,9 +75,11 @@ def solve(
     from kinesphere import pipeline
     from kinesphere.cli.console import print_json, progress_bar, stdout
     from kinesphere.cli.describe_solution import describe_solution, show_solution
-    from kinesphere.cli.files import read_recording, read_solved, write_solved
+    from kinesphere.cli.files import REPORT, read_recording, read_solved, write_solved
+    from kinesphere.io import check_solution_place
 
     settings = settings_from_options(assignments, settings_file)
+    check_solution_place(output, [REPORT])
     with progress_bar(quiet=as_json) as progress:
         recording = read_recording(file)
         solution = pipeline.solve(

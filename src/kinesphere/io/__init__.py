@@ -1,6 +1,8 @@
 """Files in and out: a registry that recognises a format by its content, a module per format."""
 
 from kinesphere.io import formats as formats
+from kinesphere.io.atomic import check_directory_place as check_directory_place
+from kinesphere.io.atomic import check_file_place as check_file_place
 from kinesphere.io.atomic import replacing as replacing
 from kinesphere.io.atomic import replacing_directory as replacing_directory
 from kinesphere.io.bvh import write_bvh as write_bvh
@@ -23,6 +25,7 @@ from kinesphere.io.registry import write as write
 from kinesphere.io.segments import read_segments as read_segments
 from kinesphere.io.skeleton_json import read_skeleton as read_skeleton
 from kinesphere.io.skeleton_json import write_skeleton as write_skeleton
+from kinesphere.io.solution import check_solution_place as check_solution_place
 from kinesphere.io.solution import read_solution as read_solution
 from kinesphere.io.solution import write_solution as write_solution
 from kinesphere.io.trc import read_trc as read_trc

@@ -1,5 +1,6 @@
 """Files and folders appear whole or not at all."""
 
+import errno
 import os
 import shutil
 import tempfile
@@ -23,8 +24,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
         If the place cannot be written to.
     """
     path = Path(path)
-    if path.is_dir():
-        raise UnwritableFile(f"{path} is a folder; a file cannot take its place")
+    check_file_place(path)
     with _said_plainly(path):
         # the suffix stays: writers that choose by it must not notice
         handle, name = tempfile.mkstemp(
@@ -60,12 +60,7 @@ def replacing_directory(path: str | Path, is_ours: Callable[[Path], bool]) -> It
         If ``path`` is a file or somebody else's folder, or cannot be written to.
     """
     path = Path(os.path.abspath(path))  # "here/." must have a name to be swapped under
-    if path.exists() and not path.is_dir():
-        raise UnwritableFile(f"{path} is a file; a folder cannot take its place")
-    if path.is_dir() and any(path.iterdir()) and not is_ours(path):
-        raise UnwritableFile(
-            f"{path} holds other files, and no solution to replace; name a new or empty folder"
-        )
+    check_directory_place(path, is_ours)
     with _said_plainly(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         beside = Path(tempfile.mkdtemp(prefix=f".{path.name[:40]}.", dir=path.parent))
@@ -81,6 +76,44 @@ def replacing_directory(path: str | Path, is_ours: Callable[[Path], bool]) -> It
             _flush(path.parent)
     finally:
         shutil.rmtree(beside, ignore_errors=True)
+
+
+def check_file_place(path: str | Path) -> None:
+    """Raise UnwritableFile unless a file can be made at ``path``, or take the place of one there.
+
+    Nothing is written: who works long before writing asks first.
+    """
+    path = Path(path)
+    with _said_plainly(path):
+        if path.is_dir():
+            raise UnwritableFile(f"{path} is a folder; a file cannot take its place")
+        _check_may_write(path.parent)
+
+
+def check_directory_place(path: str | Path, is_ours: Callable[[Path], bool]) -> None:
+    """Raise UnwritableFile unless a folder can be made at ``path``, or take the place of ours.
+
+    As `replacing_directory` would, but nothing is written.
+    """
+    path = Path(os.path.abspath(path))
+    with _said_plainly(path):
+        if path.exists() and not path.is_dir():
+            raise UnwritableFile(f"{path} is a file; a folder cannot take its place")
+        if path.is_dir() and any(path.iterdir()) and not is_ours(path):
+            raise UnwritableFile(
+                f"{path} holds other files, and no solution to replace; name a new or empty folder"
+            )
+        # the folder itself is swapped for a new one, so its parent is what must be open to us
+        _check_may_write(next(above for above in path.parents if above.exists()))
+
+
+def _check_may_write(folder: Path) -> None:
+    if not folder.exists():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
+    if not folder.is_dir():
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
 
 def _swap(path: Path, new: Path, old: Path) -> None:

@@ -1,6 +1,6 @@
 """A solved folder: everything one run found out, in the files that others use."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from kinesphere.data import Recording, Solution
 from kinesphere.errors import BadSetting, UnreadableFile
-from kinesphere.io.atomic import replacing_directory
+from kinesphere.io.atomic import check_directory_place, replacing_directory
 from kinesphere.io.bvh import write_bvh
 from kinesphere.io.c3d import read_c3d, write_c3d
 from kinesphere.io.opensim import write_osim
@@ -62,15 +62,10 @@ def write_solution(
     for name in extra:
         if name in ("", "..") or Path(name).name != name or name in FILES:
             raise BadSetting(f"{name!r} cannot be added: a plain name was expected, and a new one")
-    ours = {*FILES, *_OTHERS, *extra}
-
-    def is_ours(folder: Path) -> bool:
-        return {entry.name for entry in folder.iterdir()} <= ours
-
     recording, skeleton = solution.recording, solution.skeleton
     details = {k: None if k == _C3D else v for k, v in recording.details.items()}
     bare = replace(solution, recording=replace(recording, details=details))
-    with replacing_directory(directory, is_ours) as folder:
+    with replacing_directory(directory, _only(extra)) as folder:
         write_c3d(_with_joint_centres(solution), folder / RECORDING)
         write_skeleton(skeleton, folder / "skeleton.json")
         write_parameters(solution.parameters, folder / "parameters.csv")
@@ -83,6 +78,23 @@ def write_solution(
         for name, content in extra.items():
             raw = content.encode() if isinstance(content, str) else content
             (folder / name).write_bytes(raw)
+
+
+def check_solution_place(directory: str | Path, extra: Iterable[str] = ()) -> None:
+    """Raise UnwritableFile unless `write_solution` could write there; nothing is written.
+
+    Parameters
+    ----------
+    extra
+        Names of the further files.
+    """
+    check_directory_place(directory, _only(extra))
+
+
+def _only(extra: Iterable[str]) -> Callable[[Path], bool]:
+    """Return what tells a folder of nothing but a solution's files."""
+    ours = {*FILES, *_OTHERS, *extra}
+    return lambda folder: {entry.name for entry in folder.iterdir()} <= ours
 
 
 def read_solution(directory: str | Path) -> Solution:
