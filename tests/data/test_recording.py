@@ -5,7 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from kinesphere.data import Output, Recording
+import kinesphere
+from kinesphere.data import Analog, Output, Recording, Step
 from kinesphere.errors import BadRecording
 
 FRAMES, LABELS = 7, ("a", "b", "c", "d", "e")
@@ -67,6 +68,7 @@ def test_columns_follow_the_order_asked_for(rng):
         ({"labels": ("a", "b", "c", "d", "b")}, "more than once: b"),
         ({"rate": 0.0}, "rate is 0.0 Hz"),
         ({"rate": float("nan")}, "rate is nan Hz"),
+        ({"rate": float("inf")}, "rate is inf Hz"),
         ({"outputs": (Output("angle", "angle", np.zeros((6, 3)), "deg"),)}, "has 6 frames"),
     ],
 )
@@ -85,3 +87,13 @@ def test_infinity_is_no_way_to_say_not_seen(rng):
     markers[2, 4, 1] = np.inf
     with pytest.raises(ValueError, match=r"infinite at \(2, 4, 1\)"):
         recording(rng, markers=markers)
+
+
+def test_a_step_is_signed_by_the_version_that_took_it():
+    assert Step("read").version == kinesphere.__version__
+    assert Step("read", version="0.0").version == "0.0"
+
+
+def test_every_analog_channel_has_a_unit():
+    with pytest.raises(BadRecording, match="2 analog channels have 3 units"):
+        Analog(np.zeros((5, 2)), labels=("Fx", "Fz"), units=("N", "N", "N"), rate=1000.0)

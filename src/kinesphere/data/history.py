@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from kinesphere import __version__
+
 Json: TypeAlias = bool | int | float | str | list["Json"] | dict[str, "Json"] | None
 """What a finding or a setting may hold: whatever JSON can."""
 
@@ -20,8 +22,8 @@ class Step:
     """What was found and how good it is; names end in their unit (``_mm``, ``_deg``, ``_s``)."""
     warnings: tuple[str, ...] = ()
     """What was guessed, overridden or doubtful, each a sentence for a person."""
-    version: str = ""
-    """Version of Kinesphere that did it."""
+    version: str = __version__
+    """Version of Kinesphere that did it: this one, unless a file says otherwise."""
 
 
 History: TypeAlias = tuple[Step, ...]

@@ -55,6 +55,11 @@ class Analog:
         object.__setattr__(
             self, "values", frozen(self.values, None, len(self.labels), name="analog values")
         )
+        if len(self.units) != len(self.labels):
+            raise BadRecording(
+                f"{len(self.labels)} analog channels have {len(self.units)} units; "
+                "each needs one, be it empty"
+            )
 
 
 @dataclass(frozen=True)
@@ -104,8 +109,8 @@ class Recording:
         if len(set(labels)) != len(labels):
             twice = sorted({label for label in labels if labels.count(label) > 1})
             raise BadRecording(f"labels must be unique; more than once: {', '.join(twice)}")
-        if not self.rate > 0:
-            raise BadRecording(f"frame rate is {self.rate} Hz; it must be positive")
+        if not 0 < self.rate < np.inf:
+            raise BadRecording(f"frame rate is {self.rate} Hz; it must be positive and finite")
         put = object.__setattr__
         put(self, "labels", labels)
         put(self, "markers", frozen(self.markers, None, len(labels), 3, name="markers"))

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinesphere import __version__
 from kinesphere.data import Array, Recording, Step
 from kinesphere.errors import UnreadableFile
 from kinesphere.io.atomic import replacing
@@ -69,7 +68,6 @@ def read_csv(path: str | Path) -> Recording:
         settings={"format": "csv", "file": path.name},
         findings={"n_frames": len(markers), "n_markers": len(labels), "rate_hz": rate, "unit": "m"},
         warnings=warnings,
-        version=__version__,
     )
     return Recording(markers=markers, labels=labels, rate=rate, history=(step,))
 

@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from kinesphere import __version__
 from kinesphere.data import Array, Parameters, Skeleton, Step
 from kinesphere.errors import BadModel, UnreadableFile
 from kinesphere.io.csv import TIME_FORMAT, rate_of, read_columns, write_columns
@@ -88,7 +87,6 @@ def read_parameters(path: str | Path, skeleton: Skeleton | None = None) -> Param
         settings={"format": "parameters", "file": path.name},
         findings={"n_frames": n, "n_joints": n_joints, "rate_hz": rate},
         warnings=warnings,
-        version=__version__,
     )
     return Parameters(
         skeleton=skeleton,

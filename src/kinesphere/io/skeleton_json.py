@@ -6,7 +6,6 @@ from typing import Annotated, Any, Literal, TypeAlias
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from kinesphere import __version__
 from kinesphere.data import AxesSource, Joint, Limb, Observability, Skeleton, Step
 from kinesphere.data.validation import first_problem
 from kinesphere.errors import BadModel, UnreadableFile
@@ -121,7 +120,6 @@ def read_skeleton(path: str | Path) -> Skeleton:
             name="read",
             settings={"format": "skeleton", "file": path.name},
             findings={"n_limbs": len(s.limbs), "n_joints": len(s.joints)},
-            version=__version__,
         )
         return Skeleton(
             limbs=tuple(map(_limb, s.limbs)), joints=tuple(map(_joint, s.joints)), history=(step,)

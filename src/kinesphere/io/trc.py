@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere import __version__
 from kinesphere.data import Array, Recording, Step
 from kinesphere.errors import BadSetting, UnreadableFile
 from kinesphere.io.atomic import replacing
@@ -104,7 +103,6 @@ def read_trc(path: str | Path) -> Recording:
                     "first_frame": first_frame,
                 },
                 warnings=tuple(warnings),
-                version=__version__,
             ),
         ),
     )

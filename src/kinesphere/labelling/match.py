@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinesphere import __version__
 from kinesphere.data import Json, Recording, Step, TopologicalModel
 from kinesphere.errors import BadRecording
 from kinesphere.labelling.choice import (
@@ -138,5 +137,4 @@ def _step(
             "other_people": list(others),
         },
         warnings=tuple(warnings),
-        version=__version__,
     )

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinesphere import __version__
 from kinesphere.data import Motion, Step, settings_as_json
 from kinesphere.normalization.account import findings_of, warnings_of
 from kinesphere.normalization.alignment import align_limbs
@@ -69,7 +68,6 @@ def normalize(
         settings=settings_as_json(settings),
         findings=findings_of(samples, default, verdict, alignment),
         warnings=warnings_of(samples, default, alignment) + verdict.warnings,
-        version=__version__,
     )
     moved = propagate(motion, alignment.turns, alignment.shifts, alignment.along, alignment.lengths)
     return replace(moved, history=(*motion.history, step))

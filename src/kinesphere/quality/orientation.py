@@ -5,7 +5,6 @@ from typing import Literal
 
 import numpy as np
 
-from kinesphere import __version__
 from kinesphere.data import (
     Array,
     Json,
@@ -100,7 +99,6 @@ def orient(
             "world_from_file": (turn @ recording.world_from_file).tolist(),
         },
         warnings=(*judgement.warnings, *doubts),
-        version=__version__,
     )
     return replace(
         recording,

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from kinesphere import __version__
 from kinesphere.data import Array, Output, OutputKind, Recording, Step, UpAxis
 from kinesphere.data.history import Json
 from kinesphere.errors import UnreadableFile
@@ -112,7 +111,6 @@ def _recording(path: Path, content: bytes, layout: Layout, frames: Frames) -> Re
                 settings={"format": "c3d", "file": path.name},
                 findings=findings,
                 warnings=tuple(warnings),
-                version=__version__,
             ),
         ),
     )
