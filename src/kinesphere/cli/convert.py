@@ -23,7 +23,8 @@ def convert(
     [bold].csv[/bold]), to [bold].bvh[/bold], [bold].osim[/bold], [bold].mot[/bold] and
     [bold].json[/bold] (its skeleton).
 
-    Example: [bold]kinesphere convert walk.c3d walk.trc[/bold]
+    Examples: [bold]kinesphere convert walk.c3d walk.trc[/bold],
+    [bold]kinesphere convert solved walk.bvh[/bold]
     """
     from kinesphere.cli.console import print_json, print_warnings, stdout
     from kinesphere.cli.files import check_target

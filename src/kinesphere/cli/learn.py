@@ -28,7 +28,8 @@ def model(
 ) -> None:
     """Learn a topological model from labelled recordings.
 
-    Example: [bold]kinesphere model trial1.c3d trial2.c3d -o layout.json[/bold]
+    Examples: [bold]kinesphere model trial1.c3d trial2.c3d -o layout.json[/bold],
+    [bold]kinesphere model knee.c3d --segments MarkerSet.xml -o plates.json[/bold]
     """
     from kinesphere.cli.console import print_json, progress_bar, stdout
     from kinesphere.cli.describe_model import describe_model, show_model

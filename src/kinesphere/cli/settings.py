@@ -17,7 +17,7 @@ def settings(
 ) -> None:
     """Show every setting: value, unit, range, what it does.
 
-    Example: [bold]kinesphere settings axes[/bold]
+    Examples: [bold]kinesphere settings[/bold], [bold]kinesphere settings axes[/bold]
     """
     from kinesphere.cli.console import print_json, print_setting, print_title, stdout
     from kinesphere.cli.options import settings_from_options
@@ -33,11 +33,11 @@ def settings(
     for name, entries in shown.items():
         print_title(console, name)
         for entry in entries:
-            value = " ".join(part for part in (_value(entry["value"]), entry["unit"]) if part)
+            value = " ".join(part for part in (value_in_words(entry["value"]), entry["unit"]) if part)
             lines = [entry["doc"]]
             if stage is not None and entry["source"]:
                 lines.append(f"source: {entry['source']}")
-            print_setting(console, f"{name}.{entry['key']}", value, _allowed(entry), lines)
+            print_setting(console, f"{name}.{entry['key']}", value, allowed_in_words(entry), lines)
 
 
 def setting_rows(values: Any) -> dict[str, list[dict[str, Any]]]:
@@ -59,7 +59,8 @@ def setting_rows(values: Any) -> dict[str, list[dict[str, Any]]]:
     }
 
 
-def _value(value: Any) -> str:
+def value_in_words(value: Any) -> str:
+    """Return a setting's value as a person would write it."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if value is None or value == "":
@@ -67,7 +68,8 @@ def _value(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _allowed(entry: dict[str, Any]) -> str:
+def allowed_in_words(entry: dict[str, Any]) -> str:
+    """Return what one of ``setting_rows`` may be: its choices, its range, or its type."""
     if entry["choices"]:
         return ", ".join(entry["choices"])
     low, high = entry["low"], entry["high"]

@@ -66,7 +66,9 @@ def solve(
 ) -> None:
     """Measure skeleton, motion and joint parameters.
 
-    Example: [bold]kinesphere solve walk.c3d --calibration 0:60 -o walk[/bold]
+    Examples: [bold]kinesphere solve walk.c3d -o walk[/bold],
+    [bold]kinesphere solve range.c3d --calibration 0:60 -o range[/bold],
+    [bold]kinesphere solve walk.c3d --calibration-from range -o walk[/bold]
     """
     if calibration is not None and calibration_from is not None:
         raise BadArgument("--calibration and --calibration-from exclude each other; give one")
