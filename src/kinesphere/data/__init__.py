@@ -3,6 +3,9 @@
 from kinesphere.data.arrays import Array as Array
 from kinesphere.data.arrays import Codes as Codes
 from kinesphere.data.arrays import Mask as Mask
+from kinesphere.data.directions import DIRECTIONS as DIRECTIONS
+from kinesphere.data.directions import UpAxis as UpAxis
+from kinesphere.data.directions import vector_from_direction as vector_from_direction
 from kinesphere.data.history import History as History
 from kinesphere.data.history import Json as Json
 from kinesphere.data.history import Step as Step
@@ -24,7 +27,6 @@ from kinesphere.data.recording import Event as Event
 from kinesphere.data.recording import Output as Output
 from kinesphere.data.recording import OutputKind as OutputKind
 from kinesphere.data.recording import Recording as Recording
-from kinesphere.data.recording import UpAxis as UpAxis
 from kinesphere.data.settings import check_setting as check_setting
 from kinesphere.data.settings import check_settings as check_settings
 from kinesphere.data.settings import setting as setting

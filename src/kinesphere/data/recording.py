@@ -8,10 +8,10 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from kinesphere.data.arrays import Array, Mask, frozen
+from kinesphere.data.directions import UpAxis
 from kinesphere.data.history import History
 from kinesphere.errors import BadRecording
 
-UpAxis: TypeAlias = Literal["+x", "-x", "+y", "-y", "+z", "-z"]
 OutputKind: TypeAlias = Literal[
     "angle", "force", "moment", "power", "scalar", "segment_frame", "centre_of_mass", "other"
 ]

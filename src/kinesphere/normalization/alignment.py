@@ -9,6 +9,7 @@ from kinesphere.normalization.anatomy import Anatomy
 from kinesphere.normalization.averaging import robust_mean_rotations
 from kinesphere.normalization.limb_frames import canonical_direction, minimal_frame, paper_frame
 from kinesphere.normalization.samples import Samples
+from kinesphere.normalization.vectors import angle_between
 
 _NEAR = np.deg2rad(5.0)  # postures this much farther from the ideal than the best still count
 _MOST = 50  # frames averaged for a limb that the default position does not show
@@ -107,7 +108,7 @@ def _frame(
     name, at_end = anatomy.skeleton.limb_names[limb], not anatomy.distal_joints[limb]
     points = base_from_limb @ line
     ideal = canonical_direction(name, points, at_end=at_end)
-    off = float(np.arctan2(np.linalg.norm(np.cross(ideal, points)), ideal @ points))
+    off = float(angle_between(ideal, points))
     if rule == "paper":
         return *paper_frame(points), off
     return minimal_frame(points, ideal), ideal, off
@@ -137,7 +138,7 @@ def _pose_at_parent(samples: Samples, limb: int, turns: Array, sure: Mask) -> Ar
         points.mean(axis=0),
         at_end=not anatomy.distal_joints[limb],
     )
-    off = np.arccos(np.clip(points @ ideal, -1.0, 1.0))
+    off = angle_between(points, ideal)
     near = np.argsort(off, kind="stable")[:_MOST]
     near = near[off[near] <= off[near[0]] + _NEAR]
     return _mean_pose(parents[near], limbs[near])

@@ -8,6 +8,7 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.geometry.planes import fit_planes, smallest_rectangles
+from kinesphere.normalization.vectors import unit
 
 TURNED_ROUND = np.diag([-1.0, 1.0, -1.0])
 """Front and back, hence left and right, exchanged: multiply from the right."""
@@ -33,8 +34,8 @@ def lateral_frames(to_right: Array, upward: Array) -> Array:
     (n, 3, 3)
         ``world_from_body``; NaN where a direction is NaN or both are parallel.
     """
-    z = _unit(to_right)
-    y = _unit(upward - (upward * z).sum(axis=-1, keepdims=True) * z)
+    z = unit(to_right)
+    y = unit(upward - (upward * z).sum(axis=-1, keepdims=True) * z)
     return np.stack([np.cross(y, z), y, z + 0.0 * y], axis=-1)  # NaN in one is NaN in all
 
 
@@ -64,7 +65,7 @@ def plane_frames(joints: Array, vertical: Array, trunk: Array) -> Array:
         basis = axes[level][:, :, :2]
         flat = np.einsum("fjk,fki->fji", joints[level] - centres[level][:, None], basis)
         y[level] = np.einsum("fki,fi->fk", basis, smallest_rectangles(flat)[2])
-    y = _unit(y)
+    y = unit(y)
     y = np.where((y * trunk).sum(axis=1, keepdims=True) < 0, -y, y)
     return np.stack([normal, y, np.cross(normal, y)], axis=-1)
 
@@ -95,9 +96,3 @@ def face_the_same_way(frames: Array, sides: Array) -> Array:
         common = common * np.sign(np.sum(np.sign(agree[told]) * (fronts[told] @ common)) or 1.0)
     agree = np.where(np.isfinite(agree), agree, fronts @ common)
     return np.where((agree < 0)[:, None, None], frames @ TURNED_ROUND, frames)
-
-
-def _unit(vectors: Array) -> Array:
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(np.where(length > 1e-9, vectors / length, np.nan))

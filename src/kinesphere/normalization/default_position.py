@@ -9,6 +9,7 @@ from kinesphere.geometry.planes import fit_planes, smallest_rectangles
 from kinesphere.normalization.anatomy import without_side
 from kinesphere.normalization.samples import UP, Samples
 from kinesphere.normalization.settings import NormalizationSettings
+from kinesphere.normalization.vectors import angle_between
 
 JOINTS_OF_A_PLANE = 4
 """Any three joints lie in a plane, whatever the body does."""
@@ -146,9 +147,7 @@ def joint_speeds(samples: Samples) -> Array:
 
 
 def _angle(a: Array, b: Array) -> Array:
-    """Return the angle between vectors, (n,) deg; exact near 0 and 180."""
-    cross = np.linalg.norm(np.cross(a, b), axis=-1)
-    return np.asarray(np.rad2deg(np.arctan2(cross, (a * b).sum(axis=-1))))
+    return np.asarray(np.rad2deg(angle_between(a, b)))
 
 
 def _largest(angles: Array) -> Array:

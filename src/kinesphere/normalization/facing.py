@@ -5,10 +5,11 @@ from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
-from kinesphere.data import Array, Json, Mask
+from kinesphere.data import Array, Json, Mask, vector_from_direction
 from kinesphere.errors import AmbiguousFacing, BadSetting
 from kinesphere.normalization.anatomy import without_side
 from kinesphere.normalization.samples import Samples
+from kinesphere.normalization.vectors import angle_between, unit
 
 Facing: TypeAlias = Literal[
     "+x", "-x", "+y", "-y", "+z", "-z", "feet", "knees", "elbows", "walking", "names"
@@ -156,8 +157,7 @@ def _objections(
 
 def _against(body: Array, facing: str) -> bool:
     """Return whether the front points away from a world axis such as ``+x``."""
-    axis = np.eye(3)["xyz".index(facing[1])] * (1.0 if facing[0] == "+" else -1.0)
-    along = float(body[:, 0] @ axis)
+    along = float(body[:, 0] @ vector_from_direction(facing))
     if not abs(along) >= _LEAST:  # also catches NaN
         raise AmbiguousFacing(
             f"facing {facing} lies across the body's front and back; in the default position "
@@ -226,10 +226,9 @@ def _hinges(
     for upper, lower in limbs:
         above, below = samples.directions[:, upper], samples.directions[:, lower]
         axis = bends * np.cross(above, below)
-        sine = np.linalg.norm(axis, axis=1)
-        angle = np.arctan2(sine, (above * below).sum(axis=1))
+        angle = angle_between(above, below)
         bent = angle > _FLEXED  # False where NaN
-        scores.append(np.einsum("fi,fi->f", axis, bodies[:, :, 2])[bent] / sine[bent])
+        scores.append(np.einsum("fi,fi->f", unit(axis), bodies[:, :, 2])[bent])
         weights.append(angle[bent] ** 2)
     if not scores:
         return None

@@ -7,6 +7,7 @@ with one joint or with more than two.
 import numpy as np
 
 from kinesphere.data import Array, Limb
+from kinesphere.normalization.vectors import unit
 
 _TOO_SHORT = 1e-6  # m; a direction between points closer than this is rounding error
 _ROW = 1.5  # times longer than wide from which points lie in a row
@@ -32,16 +33,16 @@ def main_direction(limb: Limb, begin: Array, carried: Array, *, foot: bool) -> A
     """
     begin = begin if np.isfinite(begin).all() else middle_of_markers(limb)
     if len(carried) == 1:
-        return _unit(carried[0] - begin)
+        return unit(carried[0] - begin, _TOO_SHORT)
     if len(carried) > 1:
         return _principal(np.vstack([begin, carried]), carried.mean(axis=0) - begin)
     markers = _known(limb.marker_positions)
     if not len(markers):
-        return _unit(limb.long_axis)
+        return unit(limb.long_axis)
     points, outward = np.vstack([begin, markers]), markers.mean(axis=0) - begin
     in_a_row = foot and _elongation(_known(points)) > _ROW
     around_joint = not np.linalg.norm(outward) > 1e-3 * np.ptp(points, axis=0).max()
-    return _principal(points, outward) if in_a_row or around_joint else _unit(outward)
+    return _principal(points, outward) if in_a_row or around_joint else unit(outward, _TOO_SHORT)
 
 
 def far_end(limb: Limb, begin: Array, along: Array) -> Array:
@@ -61,11 +62,6 @@ def middle_of_markers(limb: Limb) -> Array:
 
 def _known(points: Array) -> Array:
     return points[np.isfinite(points).all(axis=1)]
-
-
-def _unit(vector: Array) -> Array:
-    length = np.linalg.norm(vector)
-    return vector / length if length > _TOO_SHORT else np.full(3, np.nan)
 
 
 def _elongation(points: Array) -> float:

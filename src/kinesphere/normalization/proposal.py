@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinesphere.data import Array
+from kinesphere.data import Array, vector_from_direction
 from kinesphere.errors import DegenerateMotion
 from kinesphere.normalization.body_frame import face_the_same_way, lateral_frames, plane_frames
 from kinesphere.normalization.default_position import JOINTS_OF_A_PLANE
@@ -78,8 +78,7 @@ def propose_bodies(
             f"{n_joints} joints do not tell the body's axes: it takes a pair of shoulders or hips "
             "named left and right, or four joints, or a level facing such as '+x'"
         )
-    ahead = np.eye(3)["xyz".index(facing[1])] * (1.0 if facing[0] == "+" else -1.0)
-    body = lateral_frames(np.cross(ahead, UP)[None], UP[None])
+    body = lateral_frames(np.cross(vector_from_direction(facing), UP)[None], UP[None])
     return Proposal(
         root_from_body=roots @ body,
         method="facing",

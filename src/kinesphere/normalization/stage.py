@@ -15,12 +15,10 @@ from kinesphere.normalization.proposal import propose_bodies
 from kinesphere.normalization.samples import take_samples
 from kinesphere.normalization.settings import NormalizationSettings
 
-_DEFAULTS = NormalizationSettings()
-
 
 def normalize(
     motion: Motion,
-    settings: NormalizationSettings = _DEFAULTS,
+    settings: NormalizationSettings | None = None,
     facing: Facing | None = None,
 ) -> Motion:
     """Align the frame of every limb with the body (Sar Dessai et al. 2006, section 3).
@@ -48,6 +46,7 @@ def normalize(
     BadSetting
         If ``facing`` is no known word.
     """
+    settings = settings or NormalizationSettings()
     samples = take_samples(motion, settings.sampling, settings.speed_window)
     proposal = propose_bodies(samples, settings, facing)
     default = find_default_frames(samples, proposal, settings)

@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from kinesphere.data import (
+    DIRECTIONS,
     Array,
     Json,
     Recording,
@@ -19,7 +20,7 @@ from kinesphere.data import (
 from kinesphere.quality.body import find_bodies, find_long_axes
 from kinesphere.quality.chirality import Chirality, find_chirality
 from kinesphere.quality.up_axis import judge_up
-from kinesphere.quality.upright import DIRECTIONS, find_evidence
+from kinesphere.quality.upright import find_evidence
 
 MIRRORED = 0.2
 """At most this share of the body parts is the right way round in a mirrored recording: the

@@ -5,8 +5,8 @@ from typing import Literal
 
 import numpy as np
 
-from kinesphere.data import UpAxis
-from kinesphere.quality.upright import DIRECTIONS, Evidence
+from kinesphere.data import DIRECTIONS, UpAxis
+from kinesphere.quality.upright import Evidence
 
 Source = Literal["user", "body", "file", "floor", "extent", "assumed"]
 

@@ -9,10 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinesphere.data import Array, Recording, UpAxis
+from kinesphere.data import DIRECTIONS, Array, Recording, vector_from_direction
 from kinesphere.quality.body import labelled_columns
 
-DIRECTIONS: tuple[UpAxis, ...] = ("+x", "-x", "+y", "-y", "+z", "-z")
 WITHIN = 0.8
 """Cosine of 37°: a person this close to a direction is upright along it; no two directions
 qualify at once."""
@@ -31,13 +30,6 @@ class Evidence:
     """(6,) height of the lowest marker along it, median over frames, in the same sizes."""
     extent: Array
     """(3,) median extent along each axis, in the same sizes."""
-
-
-def vector(direction: UpAxis) -> Array:
-    """Return the unit vector of a direction, (3,)."""
-    axis = np.zeros(3)
-    axis["xyz".index(direction[1])] = 1.0 if direction[0] == "+" else -1.0
-    return axis
 
 
 def find_evidence(recording: Recording, long_axes: Array) -> Evidence:
@@ -60,6 +52,6 @@ def find_evidence(recording: Recording, long_axes: Array) -> Evidence:
     size = float(np.linalg.norm(extent)) or float(np.linalg.norm(travel)) or 1.0
     ends = np.stack([low, -high], axis=2).reshape(len(points), 6)  # the order of DIRECTIONS
     spread = np.percentile(ends, 90, axis=0) - np.percentile(ends, 10, axis=0)
-    along = long_axes @ np.array([vector(d) for d in DIRECTIONS]).T
+    along = long_axes @ np.array([vector_from_direction(d) for d in DIRECTIONS]).T
     upright = (along > WITHIN).mean(axis=0) if len(long_axes) else np.full(6, np.nan)
     return Evidence(upright, spread / size, np.median(ends, axis=0) / size, extent / size)

@@ -7,7 +7,7 @@ along as it was: spelling, order, descriptions, locks.
 import numpy as np
 
 from kinesphere import __version__
-from kinesphere.data import Analog, Array, Output, Recording
+from kinesphere.data import Analog, Output, Recording, vector_from_direction
 from kinesphere.io.c3d.events import start_time, with_events
 from kinesphere.io.c3d.header import LARGEST_WORD
 from kinesphere.io.c3d.parameters import (
@@ -70,9 +70,7 @@ def _up_in_file(recording: Recording) -> str | None:
     """Return the direction that is up in the axes of the file, if it is one of those axes."""
     if recording.up is None:
         return None
-    up: Array = np.zeros(3)
-    up["xyz".index(recording.up[1])] = 1.0 if recording.up[0] == "+" else -1.0
-    in_file = up @ recording.world_from_file
+    in_file = vector_from_direction(recording.up) @ recording.world_from_file
     axis = int(np.argmax(np.abs(in_file)))
     if not np.isclose(abs(in_file[axis]), 1.0):
         return None
