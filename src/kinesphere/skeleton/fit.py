@@ -21,6 +21,7 @@ from kinesphere.skeleton.chain import measure_chain
 from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.report import describe_joint, describe_limb
 from kinesphere.skeleton.sampling import spread_frames
+from kinesphere.skeleton.scale import scaled, size_share
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.solve import residuals, solve_poses
 from kinesphere.skeleton.tree import find_tree
@@ -62,9 +63,10 @@ def fit_skeleton(
         raise BadRecording("the recording has no frames; one at least is needed to fit a skeleton")
     tree = find_tree(recording, model)
     used = [label for limb in tree.limbs for label in tree.markers[limb]]
-    frames = spread_frames(
-        recording.markers[:, recording.columns(tuple(used))], settings.sample_frames
-    )
+    own = recording.markers[:, recording.columns(tuple(used))]
+    frames = spread_frames(own, settings.sample_frames)
+    asked, share = settings, size_share(own[frames])
+    settings = scaled(asked, share)
     markers = {label: recording.markers[:, i] for i, label in enumerate(recording.labels)}
     sample = {label: m[frames] for label, m in markers.items()}
     bodies, joints = measure_chain(tree, model, sample, settings)
@@ -84,9 +86,10 @@ def fit_skeleton(
     }
     step = Step(
         name="skeleton",
-        settings=settings_as_json(settings),
+        settings=settings_as_json(asked),
         findings={
             "model": model.name,
+            "length_share": _number(share),
             "frames_measured_on": len(frames),
             "adopted_markers": dict(adopted),
             "joints": {

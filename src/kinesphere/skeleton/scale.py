@@ -1,0 +1,39 @@
+"""Lengths that suit people, shrunk for what is much smaller: a hand, a finger, an insect."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.skeleton.averages import median_seen
+from kinesphere.skeleton.settings import SkeletonSettings
+
+PERSON = 0.2
+"""m, rms extent of all markers about their middle from which a subject counts as a person's size:
+people have 0.40 to 0.66 m, a single arm or foot with its shank 0.16 to 0.18 m, a hand 0.05 m."""
+
+
+def size_share(markers: Array) -> float:
+    """Return the markers' extent as a share of a person's, at most 1, (n, m, 3) m → 0…1.
+
+    Frames count by their median, so a few ghosts do not matter; 1 where nothing is seen.
+    """
+    seen = np.asarray(np.isfinite(markers).all(axis=2))
+    count = np.maximum(seen.sum(axis=1), 1)
+    at = np.where(seen[..., None], markers, 0.0)
+    middle = at.sum(axis=1) / count[:, None]
+    square = np.where(seen[..., None], (markers - middle[:, None]) ** 2, 0.0).sum(axis=(1, 2))
+    extent = np.where(seen.sum(axis=1) > 1, np.sqrt(square / count), np.nan)
+    usual = float(median_seen(extent))
+    return min(1.0, usual / PERSON) if usual > 0 else 1.0
+
+
+def scaled(settings: SkeletonSettings, share: float) -> SkeletonSettings:
+    """Return the settings with the lengths that tell a shape from a line shrunk by ``share``."""
+    least = 0.01  # mm, the settings' own lower bound
+    return replace(
+        settings,
+        outlier_mm=max(share * settings.outlier_mm, least),
+        min_spread_mm=max(share * settings.min_spread_mm, least),
+        adopt_mm=max(share * settings.adopt_mm, least),
+    )
