@@ -42,6 +42,7 @@ JOINTS, SEGMENTS = ARM.joints, ARM.segments
         ({"root": "pelvis"}, "root 'pelvis' is no segment; there are left_hand, trunk"),
         ({"segments": (*SEGMENTS, SEGMENTS[0])}, "segment left_hand is there twice"),
         ({"segments": (*SEGMENTS[1:], Segment("left_hand", ("ELB",)))}, "ELB belongs to both"),
+        ({"joints": (*JOINTS[:2], JOINTS[2], JOINTS[2])}, "joint left_shoulder is there twice"),
         ({"joints": JOINTS[:2]}, "no chain of joints leads from left_hand to the root"),
         ({"joints": (*JOINTS, JointModel("x", "trunk", "left_hand"))}, "left_hand has two parents"),
         (

@@ -162,6 +162,17 @@ def test_a_skeleton_is_a_tree_in_order(rng):
     stray = dataclasses.replace(thigh, parent="pelvis")
     with pytest.raises(BadModel, match="does not join left_thigh to pelvis"):
         Skeleton(limbs=(trunk, stray), joints=(hip,))
+    shank, knee = (
+        limb(rng, "left_shank", "left_thigh", 2),
+        joint(rng, "k", "left_thigh", "left_shank", 1),
+    )
+    with pytest.raises(BadModel, match="left_shank comes before its parent left_thigh"):
+        Skeleton(limbs=(trunk, shank, thigh), joints=(knee, hip))
+    with pytest.raises(BadModel, match="limb left_thigh is there twice"):
+        Skeleton(limbs=(trunk, thigh, thigh), joints=(hip, dataclasses.replace(hip, name="h")))
+    twice = dataclasses.replace(knee, name="left_hip")
+    with pytest.raises(BadModel, match="joint left_hip is there twice"):
+        Skeleton(limbs=(trunk, thigh, shank), joints=(hip, twice))
 
 
 def test_motion_checks_its_shapes(parameters):

@@ -157,6 +157,14 @@ def test_the_root_turns_between_the_hips(performance, tmp_path):
     assert_allclose(bvh.positions["trunk"], centres[:, hips].mean(axis=1), atol=PRINTED)
 
 
+def test_the_names_of_joints_mean_nothing(performance, tmp_path):
+    motion, skeleton = performance.motion, performance.skeleton
+    joints = tuple(replace(joint, name=f"j{i}") for i, joint in enumerate(skeleton.joints))
+    write_bvh(motion, tmp_path / "a.bvh")
+    write_bvh(replace(motion, skeleton=replace(skeleton, joints=joints)), tmp_path / "b.bvh")
+    assert (tmp_path / "b.bvh").read_bytes() == (tmp_path / "a.bvh").read_bytes()
+
+
 def test_channels_are_those_the_documents_name(performance, tmp_path):
     write_bvh(performance.motion, tmp_path / "a.bvh")
     channels = evaluate(tmp_path / "a.bvh").channels

@@ -101,6 +101,7 @@ def test_what_a_skeleton_looks_like(skeleton, tmp_path):
         (lambda c: c["joints"][2].update(observability="good"), r"observability .*found 'good'"),
         (lambda c: c["limbs"][1].update(parent="tail"), "does not join head to tail"),
         (lambda c: c["limbs"][1].update(markers=["one"]), "head markers must have shape"),
+        (lambda c: c["joints"][1].update(name=c["joints"][0]["name"]), "joint neck is there twice"),
         (lambda c: c["limbs"].pop(), "11 limbs need 10 joints"),
         (lambda c: c.update(format="kinesphere-skeleton-9"), "format must be"),
         (lambda c: c.clear(), "limbs is missing"),

@@ -3,7 +3,7 @@
 No pose, no sizes: it holds for every person who wears the layout (Huang & Xia 2010, section 3).
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -95,45 +95,54 @@ class TopologicalModel:
     description: str = ""
 
     def __post_init__(self) -> None:
+        try:
+            self._check_segments()
+            self._check_joints()
+            self._check_tree()
+        except BadModel as error:
+            raise BadModel(f"model {self.name}: {error}") from None
+
+    def _check_segments(self) -> None:
         names = [segment.name for segment in self.segments]
-        if twice := sorted({n for n in names if names.count(n) > 1}):
-            raise BadModel(f"model {self.name}: segment {', '.join(twice)} is there twice")
+        _check_once("segment", names)
         if self.root not in names:
-            raise BadModel(
-                f"model {self.name}: root {self.root!r} is no segment; there are {', '.join(names)}"
-            )
+            raise BadModel(f"root {self.root!r} is no segment; there are {', '.join(names)}")
         owners: dict[str, str] = {}
         for segment in self.segments:
             for label in segment.markers:
                 if label in owners:
                     raise BadModel(
-                        f"model {self.name}: marker {label} belongs to both {owners[label]} "
-                        f"and {segment.name}; list it as shared in one of them"
+                        f"marker {label} belongs to both {owners[label]} and {segment.name}; "
+                        "list it as shared in one of them"
                     )
                 owners[label] = segment.name
-        parents: dict[str, str] = {}
+
+    def _check_joints(self) -> None:
+        names = [segment.name for segment in self.segments]
+        _check_once("joint", [joint.name for joint in self.joints])
         for joint in self.joints:
             for end in (joint.parent, joint.child):
                 if end not in names:
                     raise BadModel(
-                        f"model {self.name}: joint {joint.name} names segment {end!r}; "
-                        f"there are {', '.join(names)}"
+                        f"joint {joint.name} names segment {end!r}; there are {', '.join(names)}"
                     )
+
+    def _check_tree(self) -> None:
+        parents: dict[str, str] = {}
+        for joint in self.joints:
             if joint.child in parents:
-                raise BadModel(f"model {self.name}: segment {joint.child} has two parents")
+                raise BadModel(f"segment {joint.child} has two parents")
             parents[joint.child] = joint.parent
-        for name in names:
-            chain = [name]
+        for segment in self.segments:
+            chain = [segment.name]
             while chain[-1] in parents and chain[-1] != self.root:
                 chain.append(parents[chain[-1]])
                 if chain[-1] in chain[:-1]:
-                    raise BadModel(f"model {self.name}: joints form a ring through {chain[-1]}")
+                    raise BadModel(f"joints form a ring through {chain[-1]}")
             if chain[-1] != self.root:
-                raise BadModel(
-                    f"model {self.name}: no chain of joints leads from {name} to the root"
-                )
+                raise BadModel(f"no chain of joints leads from {segment.name} to the root")
         if self.root in parents:
-            raise BadModel(f"model {self.name}: root {self.root} hangs from {parents[self.root]}")
+            raise BadModel(f"root {self.root} hangs from {parents[self.root]}")
 
     @cached_property
     def labels(self) -> tuple[str, ...]:
@@ -156,3 +165,8 @@ class TopologicalModel:
             reached |= {joint.child for joint in ready}
             left = [joint for joint in left if joint.child not in reached]
         return tuple(ordered)
+
+
+def _check_once(what: str, names: Sequence[str]) -> None:
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise BadModel(f"{what} {', '.join(twice)} is there twice")

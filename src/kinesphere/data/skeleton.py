@@ -124,7 +124,11 @@ class Skeleton:
                 raise BadModel(f"joint {joint.name} does not join {limb.name} to {limb.parent}")
             if limb.parent not in known:
                 raise BadModel(f"limb {limb.name} comes before its parent {limb.parent}")
+            if limb.name in known:
+                raise BadModel(f"limb {limb.name} is there twice")
             known.add(limb.name)
+        if twice := sorted({n for n in self.joint_names if self.joint_names.count(n) > 1}):
+            raise BadModel(f"joint {', '.join(twice)} is there twice")
 
     @cached_property
     def limb_names(self) -> tuple[str, ...]:

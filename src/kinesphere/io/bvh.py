@@ -32,6 +32,7 @@ BVH_FROM_BODY = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
 """Body axes are x front, y up, z right; the file's rest pose has z front, y up, x left."""
 _STUB = 0.05
 """m, length of a limb whose end nobody knows."""
+_THIGHS = ("left_thigh", "right_thigh")
 _ARM = re.compile(r"(left|right)_(upper_arm|forearm|hand)$")
 
 
@@ -114,14 +115,14 @@ def _rest_rotation(limb: Limb, rest: RestPose) -> Array:
 
 def _nodes(skeleton: Skeleton, body_from_limb: Array) -> list[_Node]:
     root = skeleton.limbs[0]
-    centres = {joint.name: joint.centre_in_parent for joint in skeleton.joints}
-    hips = [j for j in skeleton.joints if j.name.endswith("_hip") and j.parent == root.name]
+    # told by the limbs, for a layout may call its joints what it likes
+    hips = [j for j in skeleton.joints if j.child in _THIGHS and j.parent == root.name]
     middle = np.mean([j.centre_in_parent for j in hips], axis=0) if len(hips) == 2 else np.zeros(3)
     pivots = [middle, *(joint.centre_in_child for joint in skeleton.joints)]
     nodes = [_Node(middle, np.zeros(3), body_from_limb[0] @ _to_end(root, middle))]
     for i, joint in enumerate(skeleton.joints, start=1):
         parent = skeleton.parents[i]
-        offset = body_from_limb[parent] @ (centres[joint.name] - pivots[parent])
+        offset = body_from_limb[parent] @ (joint.centre_in_parent - pivots[parent])
         end = body_from_limb[i] @ _to_end(skeleton.limbs[i], pivots[i])
         nodes.append(_Node(pivots[i], offset, end))
     return nodes
