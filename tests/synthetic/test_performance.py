@@ -311,6 +311,20 @@ def test_feet_stay_on_the_floor(performance):
     assert lowest.max() < EXACT
 
 
+def test_it_walks_where_it_looks_and_stays_in_the_room():
+    long = make_performance(np.random.default_rng(4), rate=10.0, calibration_s=0.0, free_s=300.0)
+    places = long.parameters.root_positions[:, [0, 2]]
+    steps = np.diff(places, axis=0)
+    front = long.parameters.root_rotations[1:, [0, 2], 0]
+    speeds = 10.0 * np.linalg.norm(steps, axis=1)
+    walking = speeds > 0.3  # m/s
+    assert 0.2 < walking.mean() < 0.9
+    forward = np.einsum("fi,fi->f", steps, front)[walking]
+    assert forward.sum() > 0.95 * np.linalg.norm(steps[walking], axis=1).sum()
+    assert speeds.sum() / 10.0 > 50  # m, many times around
+    assert np.ptp(places, axis=0).max() < 6  # m
+
+
 def test_roaming_starts_where_the_calibration_ends(performance):
     calibrating = performance.recording.times < performance.calibration[1]
     ground = performance.motion.origins[:, 0, [0, 2]]

@@ -28,6 +28,8 @@ class Course:
     """(n_frames, n_joints, 3) True while the limb makes its movement about that axis."""
     free: Array
     """(n_frames,) 0 while calibrating, 1 in free motion, smooth between."""
+    walking: Array
+    """(n_frames,) 1 while walking, 0 while standing or reaching about, smooth between."""
 
 
 def angle_courses(
@@ -62,12 +64,14 @@ def angle_courses(
     sway = np.deg2rad(sway_deg) * smooth_noise(rng, times[early], low.shape, 0.1, 0.6)
     angles[early] += sway * (1 - free)[early, None, None]
     late = free > 0
+    walking = np.zeros(len(times))
     if late.any():
-        freely = _free_courses(rng, actor, times[late])
+        freely, share = _free_courses(rng, actor, times[late])
+        walking[late] = share * free[late]
         angles[late] += freely * free[late, None, None]
         moving[late] = np.isfinite(low[:, :_TWIST])
     angles = np.clip(angles, low, high)  # NaN limits make NaN angles: an axis that is not there
-    return Course(angles, moving, free)
+    return Course(angles, moving, free, walking)
 
 
 @dataclass(frozen=True)
@@ -128,8 +132,8 @@ def _calibrate(
     moving[now, joint, slot.axis] = True
 
 
-def _free_courses(rng: np.random.Generator, actor: Actor, times: Array) -> Array:
-    """Draw walking and reaching in turns, (n_frames, n_joints, 4) rad."""
+def _free_courses(rng: np.random.Generator, actor: Actor, times: Array) -> tuple[Array, Array]:
+    """Draw walking and reaching in turns, (n_frames, n_joints, 4) rad; (n_frames,) which it is."""
     low, high = actor.limits[..., 0], actor.limits[..., 1]
     waves = smooth_noise(rng, times, low.shape, 0.05, 0.45)
     reaching = (low + high) / 2 + (high - low) / 2 * np.sin(waves)
@@ -140,8 +144,9 @@ def _free_courses(rng: np.random.Generator, actor: Actor, times: Array) -> Array
     mean, amplitude, lead = np.deg2rad(gait[..., 0]), np.deg2rad(gait[..., 1]), gait[..., 2]
     cycles = rng.uniform(0.7, 1.0) * times + 0.3 * smooth_noise(rng, times, (), 0.02, 0.1)
     walking = mean + amplitude * np.sin(2 * np.pi * (cycles[:, None, None] + lead))
-    share = 0.5 + 0.5 * np.sin(2 * smooth_noise(rng, times, (), 0.02, 0.08))[:, None, None]
-    return np.asarray(share * walking + (1 - share) * reaching)
+    share = 0.5 + 0.5 * np.sin(2 * smooth_noise(rng, times, (), 0.02, 0.08))
+    weight = share[:, None, None]
+    return np.asarray(weight * walking + (1 - weight) * reaching), np.asarray(share)
 
 
 def smooth_step(x: Array) -> Array:
