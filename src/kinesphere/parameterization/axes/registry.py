@@ -6,6 +6,7 @@ from kinesphere.data import Array
 from kinesphere.parameterization.axes.direction_joining import direction_joining
 from kinesphere.parameterization.axes.em import em, em_restarts
 from kinesphere.parameterization.axes.fit import AxesMethod
+from kinesphere.parameterization.axes.hinge import hinge_axis
 from kinesphere.parameterization.axes.pca import pca
 from kinesphere.parameterization.axes.phase_log_pca import phase_log_pca
 from kinesphere.parameterization.axes.refinement import refine_axes
@@ -34,5 +35,5 @@ def find_axes(samples: JointSamples, n_axes: int, settings: AxesSettings) -> Arr
     """Return up to ``n_axes`` axes by the method the settings name, (n_found, 3) unit vectors."""
     axes = AXES[settings.method](samples, n_axes, settings)
     if settings.refine and settings.method in BY_ORIENTATION and len(axes):
-        return refine_axes(samples, axes)
+        return hinge_axis(samples, axes) if n_axes == 1 else refine_axes(samples, axes)
     return axes
