@@ -4,7 +4,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from kinesphere.data import Array
+from kinesphere.data import Array, Skeleton
+
+SIDED = ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
+LIMBS = frozenset({"pelvis", "trunk", "head"}) | {
+    f"{side}_{kind}" for side in ("left", "right") for kind in SIDED
+}
+"""Limbs of a person, as docs/conventions.md names them."""
 
 MIRROR = np.diag([1.0, 1.0, -1.0])  # left ↔ right in the body frame
 
@@ -32,6 +38,33 @@ N_AXES: Mapping[str, int] = {
     "knee": 1,
     "ankle": 2,
 }
+
+
+# Shares of thigh and shank together, 0.49 of the stature (Winter 2009, table 4.1), with room for
+# children, dwarfism and joints found some centimetres off.
+LEG_SHARES: Mapping[str, tuple[float, float]] = {
+    "thigh": (0.3, 0.7),
+    "shank": (0.3, 0.7),
+    "upper_arm": (0.2, 0.6),
+    "forearm": (0.15, 0.6),
+}
+
+
+def human_plan(skeleton: Skeleton) -> bool:
+    """Return whether limbs have the names and about the proportions of a person's.
+
+    Only then does anatomy say where an axis can be: four-legged bodies have a neck too.
+    """
+    if not set(skeleton.limb_names) <= LIMBS:
+        return False
+    lengths = {limb.name: limb.length for limb in skeleton.limbs}
+    for side in ("left", "right"):
+        leg = lengths.get(f"{side}_thigh", np.nan) + lengths.get(f"{side}_shank", np.nan)
+        for kind, (low, high) in LEG_SHARES.items():
+            share = lengths.get(f"{side}_{kind}", np.nan) / leg
+            if share < low or share > high:  # NaN, a limb that is not there, is no objection
+                return False
+    return True
 
 
 def joint_kind(name: str) -> str | None:

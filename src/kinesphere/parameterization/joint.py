@@ -94,14 +94,14 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         uncertainty = quality.uncertainty
     if joint_kind(view.name) is None:
         axes = _first_excursion_positive(view, axes, rest, settings)
-    rate = view.samples.rate
     findings: dict[str, Json] = {
         "n_axes": n_axes,
         "n_axes_by_data": observed,
         "axes_method": options.method,
         "axes_source": source,
         "doubts": list(doubts),
-        "phases_s": [[a / rate, b / rate] for a, b in view.samples.phases],
+        "phases_s": [list(span) for span in view.samples.phase_times],
+        "reliable_s": float(view.calibration.sum() / view.samples.rate),
         "axes_uncertainty_deg": [
             float(u) if np.isfinite(u) else None for u in np.rad2deg(uncertainty)
         ],
@@ -159,8 +159,8 @@ def _movement_axes(
         reasons_to_doubt(
             quality,
             axes,
-            nominal_axes(view.name, axes),
-            view.samples.positions[view.calibration],
+            nominal_axes(view.name, axes) if view.human else None,
+            view.samples.positions,
             options,
         ),
     )
@@ -170,7 +170,7 @@ def _free_ranges(view: JointView, axes: Array) -> Array:
     """Return the ranges of both angles of a joint that moves about its axes at once, (2,) rad."""
     at = view.calibration
     angles = two_axis_angles(
-        view.samples.rotations[at],
+        view.samples.rotations,
         axes,
         reference_rotation(view.samples),
         view.long_axis,
@@ -210,13 +210,12 @@ def _rest(
     )
     zero = view.long_axis if anatomical else None
     rotations, positions = view.samples.rotations, view.samples.positions
-    at = np.flatnonzero(view.calibration)
     if settings.rest.method == "paper":
         target, _ = rest_target(axes, np.zeros(len(axes)), view.gravity, None)
-        return paper_rest(rotations[at], positions[at], target)
+        return paper_rest(rotations, positions, target)
     target, _ = rest_target(axes, heights, view.gravity, zero)
-    slow = ~view.movement.moving[at]
-    return robust_rest(rotations[at], positions[at], slow, axes, target, settings.rest)
+    slow = ~view.movement.moving[view.calibration]
+    return robust_rest(rotations, positions, slow, axes, target, settings.rest)
 
 
 def _body_rest(view: JointView, axes: Array) -> Array:
@@ -226,11 +225,10 @@ def _body_rest(view: JointView, axes: Array) -> Array:
     moves on; a joint nobody named has no alignment, so the mean orientation serves.
     """
     if joint_kind(view.name) is None:
-        at = view.calibration
-        return mean_rotation(view.samples.rotations[at]) if at.any() else np.eye(3)
+        return mean_rotation(view.samples.rotations) if view.calibration.any() else np.eye(3)
     if len(axes) > 1 or not view.calibration.any():
         return np.eye(3)
-    height = float(np.median(view.samples.positions[view.calibration] @ axes[0]))
+    height = float(np.median(view.samples.positions @ axes[0]))
     target, unique = rest_target(axes, np.array([height]), view.gravity, view.long_axis)
     return rotation_between(view.long_axis, target) if unique else np.eye(3)
 

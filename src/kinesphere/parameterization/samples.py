@@ -3,12 +3,14 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array, Mask
 from kinesphere.geometry.rotations import rotation_angle
 
+Frames = NDArray[np.intp]
 Phase = tuple[int, int]
 """First frame and the frame after the last of a run."""
 
@@ -18,7 +20,7 @@ class JointSamples:
     """What the axis methods work on: one joint, seen from its parent."""
 
     rotations: Array
-    """(n_frames, 3, 3) ``parent_from_child``; NaN where unseen."""
+    """(n_frames, 3, 3) ``parent_from_child``."""
     positions: Array
     """(n_frames, 3) unit vectors, the child's long axis in the parent frame."""
     phases: tuple[Phase, ...]
@@ -27,6 +29,16 @@ class JointSamples:
     """Hz."""
     long_axis: Array
     """(3,) unit vector in the child."""
+    frames: Frames | None = None
+    """(n_frames,) which frames of the recording these are; None for its first ones in a row."""
+
+    @property
+    def phase_times(self) -> tuple[tuple[float, float], ...]:
+        """Start and end in s of each phase, on the recording's clock."""
+        at = np.arange(len(self.rotations)) if self.frames is None else self.frames
+        return tuple(
+            (float(at[a] / self.rate), float((at[b - 1] + 1) / self.rate)) for a, b in self.phases
+        )
 
     def with_phases(self, phases: tuple[Phase, ...]) -> "JointSamples":
         """Return the same samples with other movement phases."""

@@ -19,6 +19,7 @@ from kinesphere.data import (
 )
 from kinesphere.errors import BadSetting
 from kinesphere.geometry.chain import joint_rotations
+from kinesphere.parameterization.anatomy import human_plan
 from kinesphere.parameterization.angles import JointAngles
 from kinesphere.parameterization.joint import (
     JointFit,
@@ -32,7 +33,7 @@ from kinesphere.parameterization.measures import (
 )
 from kinesphere.parameterization.report import result_findings, stage_warnings
 from kinesphere.parameterization.settings import ParameterizationSettings
-from kinesphere.parameterization.view import JointView, view_joint
+from kinesphere.parameterization.view import JointView, reliable_frames, view_joint
 
 TORN = 0.02  # m, joints closer together than this are never called dislocated
 OUTLYING = 6.0  # robust standard deviations
@@ -80,6 +81,7 @@ def parameterize(
     twists, residuals = np.full((n, n_joints), np.nan), np.full((n, n_joints), np.nan)
     flags = np.zeros((n, n_joints), dtype=np.uint8)
     moving = np.zeros((n, n_joints), dtype=bool)
+    human = human_plan(skeleton)
     world = np.array(motion.rotations)  # a twist nobody knows is taken out of it, outward
     joints: list[Joint] = []
     findings: dict[str, Json] = {}
@@ -90,7 +92,14 @@ def parameterize(
         rotations = np.swapaxes(world[:, parent], -1, -2) @ world[:, j + 1]
         twist_known = motion.flags[:, j + 1] != PoseFlag.TWIST_UNKNOWN
         view = view_joint(
-            joint.name, rotations, limb.long_axis, twist_known, motion.rate, window, settings
+            joint.name,
+            rotations,
+            limb.long_axis,
+            twist_known,
+            motion.rate,
+            reliable_frames(motion.flags[:, [parent, j + 1]], window),
+            settings,
+            human,
         )
         fit = _reused(joint.name, reuse) or fit_joint(view, settings)
         solved = solve_joint(view, fit.axes, fit.rest, settings)

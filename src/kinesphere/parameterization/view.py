@@ -4,10 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinesphere.data import Array, Mask
+from kinesphere.data import Array, Codes, Mask, PoseFlag
 from kinesphere.parameterization.movement_filter import Movement, find_movement
 from kinesphere.parameterization.samples import JointSamples, runs, smooth_rotations
 from kinesphere.parameterization.settings import ParameterizationSettings
+
+FAIR_SHARE = 0.25  # of the seen frames; the others may show movements that these do not
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,16 +24,39 @@ class JointView:
     twist_known: Mask
     """(n_frames,) False where the orientation about the limb is arbitrary."""
     samples: JointSamples
-    """Smoothed, with the movement phases inside the calibration window."""
+    """The calibration's frames one after another, smoothed, with their movement phases."""
     movement: Movement
     calibration: Mask
-    """(n_frames,) seen frames that axes and rest are taken from."""
+    """(n_frames,) seen and reliable frames that axes and rest are taken from."""
+    human: bool = True
+    """Whether anatomy says where this joint can have an axis."""
 
     @property
     def gravity(self) -> Array:
         """(3,) centre of gravity of the samples; the limb aligned with its parent without any."""
-        p = self.samples.positions[self.calibration]
+        p = self.samples.positions
         return np.asarray(p.mean(axis=0)) if len(p) else self.long_axis
+
+
+def reliable_frames(flags: Codes, window: Mask) -> Mask:
+    """Return the frames of a window whose poses are good enough to find axes from, (n_frames,).
+
+    What markers or joint centres fixed, if that is a fair share of what is seen; else what borrowed
+    its twist or has none, too; at last what was filled, for a doubtful axis beats none.
+
+    Parameters
+    ----------
+    flags : (n_frames, 2)
+        PoseFlag of parent and child.
+    window : (n_frames,)
+    """
+    seen = window & (flags != PoseFlag.UNSEEN).all(axis=1)
+    worst = flags.max(axis=1)  # the flags are in the order of trust
+    for limit in (PoseFlag.JOINT_AIDED, PoseFlag.TWIST_BORROWED, PoseFlag.TWIST_UNKNOWN):
+        chosen = seen & (worst <= limit)
+        if chosen.sum() >= FAIR_SHARE * seen.sum():
+            return np.asarray(chosen)
+    return np.asarray(seen)
 
 
 def view_joint(
@@ -42,12 +67,26 @@ def view_joint(
     rate: float,
     calibration: Mask,
     settings: ParameterizationSettings,
+    human: bool = True,
 ) -> JointView:
-    """Smooth one joint's rotations and find its movement phases; arguments as in `JointView`."""
-    literal = settings.filter.method == "paper"
-    smooth = rotations if literal else smooth_rotations(rotations, rate, settings.filter.cutoff)
-    positions = smooth @ long_axis
-    movement = find_movement(positions, rate, settings.filter, calibration)
-    seen = np.asarray(np.isfinite(positions).all(axis=1) & calibration)
-    samples = JointSamples(smooth, positions, runs(movement.moving & seen), rate, long_axis)
-    return JointView(name, rotations, long_axis, twist_known, samples, movement, seen)
+    """Smooth one joint's rotations and find its movement phases; arguments as in `JointView`.
+
+    Frames outside ``calibration`` are neither found axes from nor smoothed into those that are; a
+    phase runs on across the few that are missing inside it.
+    """
+    cutoff = 0.0 if settings.filter.method == "paper" else settings.filter.cutoff
+    smooth = smooth_rotations(rotations, rate, cutoff)
+    movement = find_movement(smooth @ long_axis, rate, settings.filter, calibration)
+    chosen = np.asarray(np.isfinite(smooth[:, 0, 0]) & calibration)
+    frames = np.flatnonzero(chosen)
+    if len(frames) < len(rotations):
+        own = np.where(chosen[:, None, None], rotations, np.nan)
+        smooth = smooth_rotations(own, rate, cutoff)
+    smooth = smooth[frames]
+    phases = tuple(
+        (int(a), int(b))
+        for a, b in np.searchsorted(frames, np.reshape(runs(movement.moving), (-1, 2)))
+        if b > a
+    )
+    samples = JointSamples(smooth, smooth @ long_axis, phases, rate, long_axis, frames)
+    return JointView(name, rotations, long_axis, twist_known, samples, movement, chosen, human)

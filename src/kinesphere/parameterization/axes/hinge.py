@@ -1,4 +1,4 @@
-"""The axis of a joint that has only one: what cone and twist tell, weighed by what they are worth."""
+"""The axis of a joint that has only one: cone and twist, each weighed by its worth."""
 
 from dataclasses import dataclass
 
