@@ -2,9 +2,8 @@
 
 import json
 import math
-import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -17,8 +16,6 @@ from rich.text import Text
 
 _WIDTH = 120
 """Columns where stdout is no terminal: wide enough for every table."""
-_LONG = 240
-"""Characters of a warning that fill two lines and more."""
 
 
 def stdout() -> Console:
@@ -122,15 +119,24 @@ def print_setting(
         console.print(Padding(Text(line, style="dim"), (0, 0, 0, 4), expand=False))
 
 
-def print_warnings(console: Console, warnings: Sequence[str]) -> None:
-    """Print what a person should not miss; of a long one, what stands in brackets is left out."""
-    for warning in warnings:
-        text = warning
-        if len(text) > _LONG:
-            text = re.sub(r" \([^()]*\)", "", text) + " (why: in the report)"
+def print_warnings(console: Console, warnings: Sequence[str], names: Collection[str] = ()) -> None:
+    """Print what a person should not miss, a line for each reason.
+
+    Parameters
+    ----------
+    names
+        Joints and limbs that may be put in few words.
+    """
+    from kinesphere.report.notices import notices
+
+    for notice in notices(warnings, names):
         line = Text("! ", style="bold yellow")
-        line.append(plain(text), style="not bold yellow")
+        line.append(plain(notice.text), style="not bold yellow")
         console.print(line)
+        for reason, joints in notice.reasons:
+            line = Text(f"{plain(joints)}: ", style="")
+            line.append(plain(reason), style="dim")
+            console.print(Padding(line, (0, 0, 0, 4), expand=False))
 
 
 def _silent(stage: str, done: int, total: int) -> None:

@@ -13,7 +13,7 @@ from kinesphere.cli.console import (
 from kinesphere.cli.stages import stage_in_words
 from kinesphere.data import Solution
 from kinesphere.io.summary import summary_of
-from kinesphere.report import JointRow, joint_rows, rms, unique
+from kinesphere.report import JointRow, joint_rows, names_of, rms, unique
 
 
 def describe_solution(solution: Solution) -> dict[str, Any]:
@@ -70,11 +70,11 @@ def show_solution(summary: dict[str, Any], solution: Solution) -> None:
     )
     if summary["warnings"]:
         print_title(console, "Warnings")
-        print_warnings(console, summary["warnings"])
+        print_warnings(console, summary["warnings"], names_of(solution.skeleton))
 
 
 def _joint_cells(row: JointRow) -> tuple[str, ...]:
-    angles = ", ".join(angle for angle in row.angles[: row.n_axes])
+    angles = ", ".join(_short(angle) for angle in row.angles[: row.n_axes])
     return (
         row.name,
         row.residual,
@@ -82,5 +82,9 @@ def _joint_cells(row: JointRow) -> tuple[str, ...]:
         row.observability,
         row.axes,
         angles,
-        row.angles[-1],
+        _short(row.angles[-1]),
     )
+
+
+def _short(span: str) -> str:
+    return span.replace("° … ", "…")

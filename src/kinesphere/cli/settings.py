@@ -33,7 +33,9 @@ def settings(
     for name, entries in shown.items():
         print_title(console, name)
         for entry in entries:
-            value = " ".join(part for part in (value_in_words(entry["value"]), entry["unit"]) if part)
+            value = " ".join(
+                part for part in (value_in_words(entry["value"]), entry["unit"]) if part
+            )
             lines = [entry["doc"]]
             if stage is not None and entry["source"]:
                 lines.append(f"source: {entry['source']}")

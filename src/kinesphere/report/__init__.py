@@ -1,5 +1,8 @@
 """One self-contained page that shows what was found."""
 
+from kinesphere.report.notices import Notice as Notice
+from kinesphere.report.notices import names_of as names_of
+from kinesphere.report.notices import notices as notices
 from kinesphere.report.page import report_html as report_html
 from kinesphere.report.tables import JointRow as JointRow
 from kinesphere.report.tables import joint_rows as joint_rows

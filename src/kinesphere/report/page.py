@@ -12,9 +12,9 @@ from markupsafe import Markup
 
 import kinesphere
 from kinesphere.data import Solution
+from kinesphere.report.notices import names_of, notices
 from kinesphere.report.scene import scene_from_solution
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
-from kinesphere.report.wording import unique
 
 _SCRIPTS = ("unpack.js", "space.js", "figure.js", "player.js", "curves.js", "heat.js", "page.js")
 
@@ -41,7 +41,7 @@ def report_html(solution: Solution, title: str = "") -> str:
         title=title or "Solved motion",
         version=kinesphere.__version__,
         tiles=tiles(solution),
-        warnings=unique(solution.warnings),
+        warnings=notices(solution.warnings, names_of(solution.skeleton)),
         joints=joints,
         charts=chart_order(joints),
         limbs=limb_rows(solution),

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from kinesphere.data import Array, Joint, JointFlag, Json, PoseFlag, Solution, Step
+from kinesphere.report.notices import Notice, names_of, notices
 from kinesphere.report.scene import side_of
 from kinesphere.report.wording import finding_in_words, number_in_words
 
@@ -77,7 +78,7 @@ class StepCard:
     seconds: str
     findings: tuple[tuple[str, str], ...]
     tables: tuple[FindingTable, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[Notice, ...]
     settings: tuple[tuple[str, str], ...]
     version: str
 
@@ -173,7 +174,7 @@ def step_cards(solution: Solution) -> list[StepCard]:
                     finding_in_words(k, v) for k, v in step.findings.items() if not _is_table(v)
                 ),
                 tables=tuple(_table(k, v) for k, v in step.findings.items() if _is_table(v)),
-                warnings=step.warnings,
+                warnings=tuple(notices(step.warnings, names_of(solution.skeleton))),
                 settings=settings_rows(step),
                 version=step.version,
             )

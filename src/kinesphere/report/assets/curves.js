@@ -148,7 +148,7 @@ class Chart {
     context.fillStyle = theme.accent;
     for (const [first, end] of scene.moving[this.index]) {
       const [a, b] = [this.x(first / scene.rate), this.x(end / scene.rate)];
-      context.fillRect(a, margin.top - 5, Math.max(1, b - a), 2);
+      context.fillRect(a, margin.top - 6, Math.max(1, b - a), 3);
     }
   }
   /* Every pixel column shows its lowest and highest value, so no peak is lost in a long trial. */

@@ -96,7 +96,7 @@ class Player extends Figure {
     if (this.show.frames) this.addFrames(items, poses);
     if (this.show.axes) this.addAxes(items, poses);
     items.sort((a, b) => b.depth - a.depth).forEach((item) => item.paint());
-    if (this.show.names) this.paintNames(bones);
+    if (this.show.names) this.paintNames(bones, frame);
   }
   paintFloor() {
     const { context, camera, theme } = this;
@@ -125,18 +125,20 @@ class Player extends Figure {
   paintShadow(bones) {
     const { context, camera, theme } = this;
     if (camera.pitch < 0.02) return;
+    const middle = camera.project([camera.target[0], this.floor, camera.target[2]]);
+    if (!middle) return;
     context.strokeStyle = theme.shadow;
-    context.lineCap = "round";
+    context.lineCap = context.lineJoin = "round";
+    context.lineWidth = 0.06 * middle[2];
+    context.beginPath(); // one stroke for all: where two sticks' shadows meet it is no darker
     for (const { near, far } of bones) {
       const a = camera.project([near[0], this.floor, near[2]]);
       const b = camera.project([far[0], this.floor, far[2]]);
       if (!a || !b) continue;
-      context.lineWidth = 0.06 * a[2];
-      context.beginPath();
       context.moveTo(a[0], a[1]);
       context.lineTo(b[0], b[1]);
-      context.stroke();
     }
+    context.stroke();
   }
   /* A limb that carries several others is a body, not a stick: fill what its joints span. */
   addTrunks(items, bones) {
@@ -211,11 +213,6 @@ class Player extends Figure {
           context.arc(at[0], at[1], radius, 0, 2 * Math.PI);
           context.fill();
           context.stroke();
-          if (this.show.names && radius > 2.2) {
-            context.fillStyle = theme.dim;
-            context.font = "10px system-ui, sans-serif";
-            context.fillText(marker.label, at[0] + radius + 3, at[1] + 3);
-          }
         },
       });
     });
@@ -269,16 +266,42 @@ class Player extends Figure {
       });
     });
   }
-  paintNames(bones) {
-    const { context, camera, theme } = this;
-    context.font = "600 11px system-ui, sans-serif";
-    context.fillStyle = theme.text;
+  /* Limbs first, then markers from near to far; a name that finds no free place stays away. */
+  paintNames(bones, frame) {
+    const { camera, theme, show } = this;
+    const taken = [];
     const named = new Set();
     for (const { limb, near, far } of bones) {
       if (named.has(limb.name)) continue;
       named.add(limb.name);
       const at = camera.project(scaled(add(near, far), 0.5));
-      if (at) context.fillText(limb.name.replaceAll("_", " "), at[0] + 8, at[1]);
+      if (at) this.paintName(limb.name.replaceAll("_", " "), at, "600 11px", theme.text, taken);
+    }
+    if (!show.markers) return;
+    const seen = this.scene.markers.map((marker, i) => {
+      const p = this.point("markers", i, frame);
+      return { label: marker.label, at: p && camera.project(p) };
+    });
+    seen.filter(({ at }) => at).sort((a, b) => a.at[3] - b.at[3]).forEach(({ label, at }) =>
+      this.paintName(label, at, "10px", theme.dim, taken));
+  }
+  paintName(text, at, font, colour, taken) {
+    const { context, theme } = this;
+    context.font = `${font} system-ui, sans-serif`;
+    const [wide, high, gap] = [context.measureText(text).width, 12, 6];
+    const places = [[gap, 4], [-gap - wide, 4], [gap, -6], [-gap - wide, -6], [gap, 14], [-gap - wide, 14]];
+    for (const [dx, dy] of places) {
+      const [x, y] = [at[0] + dx, at[1] + dy];
+      const free = taken.every((t) => x > t[0] + t[2] || x + wide < t[0] || y > t[1] + high || y < t[1] - high);
+      if (!free) continue;
+      taken.push([x, y, wide]);
+      context.strokeStyle = theme.card;
+      context.lineWidth = 3;
+      context.lineJoin = "round";
+      context.strokeText(text, x, y);
+      context.fillStyle = colour;
+      context.fillText(text, x, y);
+      return;
     }
   }
 }

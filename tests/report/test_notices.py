@@ -1,0 +1,63 @@
+"""Warnings in few words, and nothing lost on the way."""
+
+import pytest
+
+from kinesphere.report.notices import Notice, names_in_words, notices
+
+JOINTS = ("neck", "left_hip", "right_hip", "left_upper_arm", "right_upper_arm", "left_foot")
+
+
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        (["left_hip", "neck", "right_hip"], "hips, neck"),
+        (["right_hip", "left_hip"], "hips"),
+        (["left_hip", "right_knee"], "left hip, right knee"),
+        (["left_upper_arm", "right_upper_arm"], "upper arms"),
+        (["left_foot", "right_foot", "left_foot"], "feet"),
+        (["joint_01", "left"], "joint 01, left"),
+        ([], ""),
+    ],
+)
+def test_names(names, said):
+    assert names_in_words(names) == said
+
+
+def test_reasons_are_told_apart_most_common_first():
+    warning = (
+        "not told: neck (hardly moves), left_hip (halves differ by 75°; 63° off, 12.5° are "
+        "wanted), right_hip (halves differ by 7°)"
+    )
+    assert notices([warning], JOINTS) == [
+        Notice(
+            "not told",
+            (
+                ("halves differ by 7–75°", "hips"),
+                ("hardly moves", "neck"),
+                ("63° off, 12.5° are wanted", "left hip"),
+            ),
+        )
+    ]
+
+
+@pytest.mark.parametrize(
+    ("warning", "said"),
+    [
+        (
+            "the centre of neck, left_hip, right_hip; it is elsewhere",
+            "the centre of neck, hips; it is elsewhere",
+        ),
+        ("nothing tells the twist at left_hip, right_hip", "nothing tells the twist at hips"),
+        ("at left_hip alone", "at left_hip alone"),
+        ("labels LFHD, left_hip_marker, x", "labels LFHD, left_hip_marker, x"),
+        ("left out: STRANGE (no reason we know)", "left out: STRANGE (no reason we know)"),
+        ("trailing: neck (still) and more", "trailing: neck (still) and more"),
+        ("", ""),
+    ],
+)
+def test_other_sentences_stay_but_for_lists_of_names(warning, said):
+    assert notices([warning], JOINTS) == [Notice(said)]
+
+
+def test_said_once():
+    assert notices(["b", "a", "b"]) == [Notice("b"), Notice("a")]
