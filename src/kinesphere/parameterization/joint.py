@@ -17,6 +17,8 @@ from kinesphere.parameterization.anatomy import (
 )
 from kinesphere.parameterization.angles import JointAngles, solve_angles, two_axis_angles
 from kinesphere.parameterization.axes import find_axes
+from kinesphere.parameterization.axes.fit import moving_positions
+from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.confidence import (
     PERCENTILES,
@@ -25,6 +27,7 @@ from kinesphere.parameterization.confidence import (
     observed_n_axes,
     reasons_to_doubt,
 )
+from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge
 from kinesphere.parameterization.main_movements import main_movements
 from kinesphere.parameterization.rest import paper_rest, rest_target, robust_rest
 from kinesphere.parameterization.samples import JointSamples
@@ -37,6 +40,7 @@ from kinesphere.parameterization.settings import (
 from kinesphere.parameterization.view import JointView
 
 TRIAL_FRAMES = 600  # enough to tell which order of axes serves better
+LOOSE = 2.0  # times the largest disagreement of halves: an axis less certain than that is none
 CLEARLY = 0.5  # another order must lower the twist at least to this share to be taken: where
 # limbs really twist, the wrong order of axes lowers it to 0.65 now and then
 
@@ -55,6 +59,8 @@ class JointFit:
     findings: Mapping[str, Json]
     doubts: tuple[str, ...]
     """What speaks against axes from the movement, each a clause."""
+    kept: str = ""
+    """Why axes from the movement serve in spite of doubts, a clause; empty where they do not."""
 
 
 def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
@@ -81,15 +87,20 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
     n_axes = declared or observed or 2
 
     axes, quality, doubts = _movement_axes(view, n_axes, options)
-    if len(axes) < n_axes or (doubts and options.on_doubt == "body"):
-        source: AxesSource = "body"
+    free = _free_hinge(view, options) if doubts and n_axes == 1 else None
+    if free is not None:
+        source: AxesSource = "movement"
+        axes, rest, _ = _movement_rest(view, free.axis[None], _height(view, free.axis), settings)
+        uncertainty = np.array([free.uncertainty])
+    elif len(axes) < n_axes or (doubts and options.on_doubt == "body"):
+        source = "body"
         axes = substitute_axes(view.name, n_axes, view.gravity)[::-1]
         rest = _body_rest(view, axes)
         uncertainty = np.full(n_axes, np.nan)
     else:
         assert quality is not None
         source = "movement"
-        axes, rest, order = _movement_rest(view, axes, quality, settings)
+        axes, rest, order = _movement_rest(view, axes, quality.heights, settings)
         quality = quality.ordered(order)
         uncertainty = quality.uncertainty
     if joint_kind(view.name) is None:
@@ -110,7 +121,12 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         ],
         **_quality_findings(quality),
     }
-    return JointFit(axes, rest, source, uncertainty, findings, tuple(doubts))
+    kept = ""
+    if free is not None:
+        left, body_left = np.rad2deg(free.error), np.rad2deg(free.body_error)
+        findings |= {"held_out_deg": left, "held_out_body_deg": body_left}
+        kept = f"{left:.1f}° instead of {body_left:.1f}°"
+    return JointFit(axes, rest, source, uncertainty, findings, tuple(doubts), kept)
 
 
 def solve_joint(
@@ -166,6 +182,27 @@ def _movement_axes(
     )
 
 
+def _free_hinge(view: JointView, options: AxesSettings) -> FreeHinge | None:
+    """Return the axis of a hinge in free motion; None where it is not clearly worth having."""
+    if options.method not in BY_ORIENTATION or options.on_doubt != "body":
+        return None
+    body_axis = substitute_axes(view.name, 1, view.gravity)[0]
+    found = free_hinge(view.samples, body_axis)
+    if found is None or not found.clearly_better:
+        return None
+    far = np.arccos(min(1.0, abs(float(found.axis @ body_axis)))) > np.deg2rad(options.farthest)
+    small = found.moved < np.deg2rad(options.smallest_range)
+    loose = found.uncertainty > np.deg2rad(LOOSE * options.largest_disagreement)
+    anatomical = view.human and joint_kind(view.name) is not None
+    return None if small or loose or (far and anatomical) else found
+
+
+def _height(view: JointView, axis: Array) -> Array:
+    """Return the cosine of the cone on which a hinge moves, (1,)."""
+    moving = moving_positions(view.samples)
+    return np.array([float(np.median(moving @ axis))])
+
+
 def _free_ranges(view: JointView, axes: Array) -> Array:
     """Return the ranges of both angles of a joint that moves about its axes at once, (2,) rad."""
     at = view.calibration
@@ -182,7 +219,7 @@ def _free_ranges(view: JointView, axes: Array) -> Array:
 
 
 def _movement_rest(
-    view: JointView, found: Array, quality: AxesQuality, settings: ParameterizationSettings
+    view: JointView, found: Array, heights: Array, settings: ParameterizationSettings
 ) -> tuple[Array, Array, list[int]]:
     """Return axes distal first, the rest orientation, and where each axis stood in ``found``."""
     axes, order = named_axes(found, view.name)
@@ -192,7 +229,7 @@ def _movement_rest(
         axes, order = (axes, order) if order[0] == 0 else (axes[::-1], order[::-1])
         return axes, reference_rotation(view.samples), order
     turned = np.sign((axes * found[order]).sum(axis=1))  # a cone's height turns with its axis
-    rest = _rest(view, axes, turned * quality.heights[order], settings)
+    rest = _rest(view, axes, turned * heights[order], settings)
     if len(axes) == 2:
         plain, other = (_order_cost(view, tried, rest, settings) for tried in (axes, axes[::-1]))
         if other[0] < plain[0] or (other[0] == plain[0] and other[1] < CLEARLY * plain[1]):

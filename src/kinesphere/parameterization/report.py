@@ -31,10 +31,20 @@ def stage_warnings(
             doubted = [
                 f"{name} ({'; '.join(fit.doubts)})"
                 for name, fit in fits.items()
-                if fit.source == source and fit.doubts
+                if fit.source == source and fit.doubts and not fit.kept
             ]
             if doubted:
                 warnings.append(f"{sentence}: {', '.join(doubted)}")
+        kept = [
+            f"{name} ({fit.kept}, though {'; '.join(fit.doubts)})"
+            for name, fit in fits.items()
+            if fit.kept
+        ]
+        if kept:
+            warnings.append(
+                "no main movement tells these axes, but all movement together foretells where the "
+                f"limb goes clearly better than the body frame's axis: {', '.join(kept)}"
+            )
     no_valley = [
         name
         for name, view in views.items()

@@ -91,8 +91,9 @@ class _Errors:
         )
 
     def colatitudes(self, axis: Array) -> Array:
+        """Return the angle of every direction to an axis in rad, (n,)."""
         p = self.positions
-        return np.arctan2(np.linalg.norm(np.cross(axis, p), axis=1), p @ axis)
+        return np.asarray(np.arctan2(np.linalg.norm(np.cross(axis, p), axis=1), p @ axis))
 
     def twists(self, axis: Array) -> Array:
         """Return what is left of the rotation when swing about the axis is taken out, centred."""
@@ -147,7 +148,8 @@ def _fit(errors: _Errors, start: Array, rounds: int) -> tuple[Array, float]:
 
 
 def _spread(errors: Array) -> float:
-    return max(NORMAL_MAD * float(np.median(np.abs(errors))), FLOOR)
+    spread = NORMAL_MAD * float(np.median(np.abs(errors)))
+    return max(spread, float(FLOOR))
 
 
 def _weights(errors: Array, spread: float) -> Array:

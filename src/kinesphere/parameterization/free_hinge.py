@@ -1,0 +1,116 @@
+"""The axis of a hinge in free motion, where no main movement tells it: all of it together does."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.parameterization.axes.hinge import hinge_axis
+from kinesphere.parameterization.confidence import PERCENTILES
+from kinesphere.parameterization.samples import JointSamples, Phase
+
+FOLDS = 4  # parts of the movement, each left out once
+SHORTEST = 1.0  # s of movement in a fold; less says nothing
+CLEARLY = 0.8  # times what the body's axis leaves: from there on a measured axis is better
+
+
+@dataclass(frozen=True, eq=False)
+class FreeHinge:
+    """An axis found from everything a hinge did, beside the body's."""
+
+    axis: Array
+    """(3,)"""
+    uncertainty: float
+    """rad, standard deviation of the direction of the axis (jackknife over the folds)."""
+    error: float
+    """rad, mean out-of-cone angle in parts that the axis and its cone were not found from."""
+    body_error: float
+    """rad, the same of the body's axis, its cone found as that of the other."""
+    moved: float
+    """rad, arc that the limb's direction covers about the axis."""
+
+    @property
+    def clearly_better(self) -> bool:
+        """Whether it foretells where the limb goes clearly better than the body's axis does."""
+        return self.error < CLEARLY * self.body_error
+
+
+def free_hinge(samples: JointSamples, body_axis: Array) -> FreeHinge | None:
+    """Return the axis of a hinge from all its movement, judged by what it was not found from.
+
+    Leave-one-part-out prediction and the jackknife: Efron & Tibshirani 1993, chapters 11 and 17.
+    The limb's directions draw a circle about the axis, whatever it twists.
+
+    Parameters
+    ----------
+    samples
+        With all movement phases of the calibration.
+    body_axis : (3,)
+        What would serve instead.
+
+    Returns
+    -------
+    FreeHinge or None
+        None where there is less than four seconds of movement.
+    """
+    folds = _folds(samples)
+    if folds is None:
+        return None
+    everything = np.concatenate([np.arange(a, b) for a, b in samples.phases])
+    axis = hinge_axis(samples, body_axis[None])[0]
+    errors, body_errors, turns = [], [], []
+    for left_out, kept in folds:
+        found = hinge_axis(samples.with_phases(kept), axis[None])[0]
+        known = np.concatenate([samples.positions[a:b] for a, b in kept])
+        new = np.concatenate([samples.positions[a:b] for a, b in left_out])
+        errors.append(_out_of_cone(found, known, new))
+        body_errors.append(_out_of_cone(body_axis, known, new))
+        turns.append(np.arctan2(np.linalg.norm(np.cross(found, axis)), abs(found @ axis)))
+    p = samples.positions[everything]
+    across = p - np.outer(p @ axis, axis)
+    middle = across.mean(axis=0)
+    azimuth = np.arctan2(np.cross(middle, across) @ axis, across @ middle)
+    arc = float(np.diff(np.percentile(azimuth, PERCENTILES))[0])
+    return FreeHinge(
+        axis=axis,
+        uncertainty=float(np.sqrt((FOLDS - 1) / FOLDS * np.sum(np.square(turns)))),
+        error=float(np.concatenate(errors).mean()),
+        body_error=float(np.concatenate(body_errors).mean()),
+        moved=arc * float(np.median(np.linalg.norm(across, axis=1))),
+    )
+
+
+def _folds(
+    samples: JointSamples,
+) -> list[tuple[tuple[Phase, ...], tuple[Phase, ...]]] | None:
+    """Return (left out, kept) phases of each contiguous part of the movement."""
+    lengths = [b - a for a, b in samples.phases]
+    total = sum(lengths)
+    if total < FOLDS * SHORTEST * samples.rate:
+        return None
+    frames = np.concatenate([np.arange(a, b) for a, b in samples.phases])
+    cuts = [int(frames[total * k // FOLDS]) for k in range(FOLDS)] + [int(frames[-1]) + 1]
+    folds = []
+    for k in range(FOLDS):
+        low, high = cuts[k], cuts[k + 1]
+        spans = ((low, high),), ((0, low), (high, len(samples.positions)))
+        left_out, kept = (
+            tuple(
+                (max(a, start), min(b, stop))
+                for start, stop in span
+                for a, b in samples.phases
+                if min(b, stop) > max(a, start)
+            )
+            for span in spans
+        )
+        folds.append((left_out, kept))
+    return folds
+
+
+def _out_of_cone(axis: Array, known: Array, new: Array) -> Array:
+    """Return how far new directions are from the cone of known ones about an axis, in rad."""
+
+    def colatitudes(p: Array) -> Array:
+        return np.asarray(np.arctan2(np.linalg.norm(np.cross(axis, p), axis=1), p @ axis))
+
+    return np.abs(colatitudes(new) - float(np.median(colatitudes(known))))
