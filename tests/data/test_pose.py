@@ -118,7 +118,9 @@ def test_what_is_unknown_is_unseen_from_there_outward(parameters):
     angles[4, 0, 1] = np.nan
     twists[5, 1] = np.nan
     flags = parameters.flags.copy()
-    flags[5, 1] = JointFlag.TWIST_UNKNOWN
+    flags[5, 1] = JointFlag.TWIST_UNKNOWN | JointFlag.FILLED
+    flags[6, 0] = JointFlag.FILLED | JointFlag.SINGULAR
+    flags[7, 0] = JointFlag.SINGULAR
     motion = motion_from_parameters(
         dataclasses.replace(parameters, angles=angles, twists=twists, flags=flags)
     )
@@ -128,6 +130,8 @@ def test_what_is_unknown_is_unseen_from_there_outward(parameters):
         PoseFlag.MEASURED,
         PoseFlag.TWIST_UNKNOWN,
     ]
+    assert motion.flags[6].tolist() == [PoseFlag.MEASURED, PoseFlag.FILLED, PoseFlag.MEASURED]
+    assert motion.flags[7].tolist() == [PoseFlag.MEASURED] * 3
     whole = motion_from_parameters(parameters)
     others = np.arange(FRAMES) != 4
     others[5] = False

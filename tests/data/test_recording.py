@@ -77,7 +77,17 @@ def test_contradictions_are_refused(rng, changes, message):
         recording(rng, **changes)
 
 
+def test_an_array_in_another_order_is_put_in_ours(rng):
+    columns_first = np.asfortranarray(rng.normal(size=(FRAMES, len(LABELS), 3)))
+    columns_first.flags.writeable = False
+    held = recording(rng, markers=columns_first).markers
+    assert held.flags.c_contiguous
+    np.testing.assert_array_equal(held, columns_first)
+
+
 def test_misplaced_axes_are_named(rng):
+    with pytest.raises(ValueError, match=r"residuals must have shape \(7, 5\), got \(5, 7\)"):
+        recording(rng, residuals=np.zeros((5, 7)))
     with pytest.raises(ValueError, match=r"markers must have shape \(any, 5, 3\), got \(5, 7, 3\)"):
         recording(rng, markers=np.zeros((5, 7, 3)))
 

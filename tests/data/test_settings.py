@@ -32,6 +32,7 @@ def test_what_is_in_range_passes_unchanged():
         ({"window": 2.5}, "window is 2.5; it must be at most 2.0 s"),
         ({"window": float("nan")}, "window is nan"),
         ({"method": "otsu"}, "method is 'otsu'; known are valley, paper"),
+        ({"limit": float("nan")}, "limit is nan; it must be at least 0.0$"),
         ({"limit": -1.0}, "limit is -1.0; it must be at least 0.0$"),
     ],
 )

@@ -1,5 +1,6 @@
 """Files and folders appear whole or not at all."""
 
+import errno
 import os
 import sys
 
@@ -45,6 +46,17 @@ def test_a_failure_leaves_everything_as_it_was(tmp_path):
         fail_halfway(new)
     assert path.read_text() == "old"
     assert names(tmp_path) == ["a.txt"]
+
+
+@pytest.mark.parametrize("put", [replacing, lambda path: replacing_directory(path, names)])
+def test_a_disk_that_fills_up_is_said_plainly(tmp_path, put):
+    full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    with (
+        pytest.raises(UnwritableFile, match=r"a\.bvh: cannot be written \("),
+        put(tmp_path / "a.bvh"),
+    ):
+        raise full
+    assert names(tmp_path) == []
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no such permissions")

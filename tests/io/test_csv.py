@@ -20,7 +20,7 @@ from kinesphere.io import (
 )
 
 PRINTED = 5.1e-10  # m; nine decimals, rounded
-REBUILT = 1e-6  # m; what the table must keep of every point
+REBUILT = 1e-8  # m; what the table keeps of every point
 
 
 @pytest.fixture
@@ -105,9 +105,9 @@ def test_table_and_skeleton_alone_rebuild_every_pose(request, tmp_path, of):
     assert_allclose(again.residuals, truth.residuals, atol=PRINTED)
     before, after = motion_from_parameters(truth), motion_from_parameters(again)
     assert_array_equal(after.flags, before.flags)
-    assert_allclose(after.origins, before.origins, atol=REBUILT / 100)
+    assert_allclose(after.origins, before.origins, atol=REBUILT)
     # 1 m from any limb's origin a point moves less than that, too
-    assert_allclose(after.rotations, before.rotations, atol=REBUILT / 100)
+    assert_allclose(after.rotations, before.rotations, atol=REBUILT)
 
 
 def test_the_columns_are_those_of_the_documents(performance, tmp_path):

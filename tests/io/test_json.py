@@ -13,16 +13,17 @@ from kinesphere.data import (
     MarkerStatistics,
     Segment,
     TopologicalModel,
+    model_schema,
     model_to_dict,
 )
 from kinesphere.errors import BadModel, UnreadableFile
 from kinesphere.io import (
-    model_json_schema,
     read,
     read_model,
     read_skeleton,
     write,
     write_model,
+    write_model_schema,
     write_skeleton,
 )
 from kinesphere.io.json_files import json_text, read_json
@@ -223,6 +224,7 @@ def test_a_short_model_by_hand_is_enough(tmp_path):
         (lambda c: c["statistics"][0]["deviation_m"].pop(), "3 labels need 3 rows of 3"),
         (lambda c: c["mirror"].append(["LSHO"]), r"mirror\[1\]\[1\] is missing"),
         (lambda c: c.update(aliases=["C07"]), "aliases must be an object"),
+        (lambda c: c["joints"][0]["landmarks"][1].update(forward=0.1), "forward need scale"),
         (lambda c: c.update(segments=[]), "segments"),
         (lambda c: c.update(name=""), "name"),
         (lambda c: c.update(name=7, root=8), r"name must be text, found 7 \(and 1 more\)"),
@@ -241,8 +243,9 @@ def test_a_wrong_model_is_named(model, tmp_path, change, said):
 
 def test_the_schema_names_every_key_of_a_model(model, tmp_path):
     write_model(model, tmp_path / "model.json")
-    content, schema = read_json(tmp_path / "model.json"), model_json_schema()
-    json.dumps(schema)
+    write_model_schema(tmp_path / "schema.json")
+    content, schema = (read_json(tmp_path / f"{name}.json") for name in ("model", "schema"))
+    assert schema == model_schema()
     assert schema["additionalProperties"] is False
     assert set(schema["properties"]) == set(content)
     for part, name in (

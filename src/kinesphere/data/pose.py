@@ -12,7 +12,8 @@ def motion_from_parameters(parameters: Parameters) -> Motion:
     """Rebuild every pose from the root pose, the angles and the skeleton alone.
 
     Joints never come apart in the result. A twist that is NaN counts as zero; a limb whose angles
-    are NaN, and every limb it carries, is unseen.
+    are NaN, and every limb it carries, is unseen. What the parameters call filled or of unknown
+    twist is so in the poses; the rest counts as measured.
 
     Raises
     ------
@@ -41,9 +42,11 @@ def motion_from_parameters(parameters: Parameters) -> Motion:
     )
     known = np.isfinite(rotations).all(axis=(2, 3)) & np.isfinite(origins).all(axis=2)
     flags = np.where(known, PoseFlag.MEASURED, PoseFlag.UNSEEN).astype(np.uint8)
-    guessed = np.zeros_like(known)
-    guessed[:, 1:] = (parameters.flags & JointFlag.TWIST_UNKNOWN) > 0
-    flags[known & guessed] = PoseFlag.TWIST_UNKNOWN
+    for told, becomes in (
+        (JointFlag.FILLED, PoseFlag.FILLED),
+        (JointFlag.TWIST_UNKNOWN, PoseFlag.TWIST_UNKNOWN),  # says more: the twist is no measurement
+    ):
+        flags[:, 1:][known[:, 1:] & ((parameters.flags & told) > 0)] = becomes
     return Motion(
         skeleton=skeleton,
         rotations=rotations,

@@ -10,9 +10,9 @@ from kinesphere.io.c3d import read_c3d as read_c3d
 from kinesphere.io.c3d import write_c3d as write_c3d
 from kinesphere.io.csv import read_csv as read_csv
 from kinesphere.io.csv import write_csv as write_csv
-from kinesphere.io.model_json import model_json_schema as model_json_schema
 from kinesphere.io.model_json import read_model as read_model
 from kinesphere.io.model_json import write_model as write_model
+from kinesphere.io.model_json import write_model_schema as write_model_schema
 from kinesphere.io.opensim import write_osim as write_osim
 from kinesphere.io.opensim_motion import write_mot as write_mot
 from kinesphere.io.parameters_csv import read_parameters as read_parameters

@@ -33,8 +33,8 @@ def replacing(path: str | Path) -> Iterator[Path]:
     temporary = Path(name)
     try:
         os.close(handle)
-        yield temporary
-        with _said_plainly(path):
+        with _said_plainly(path):  # the block's own writing, too: a disk may fill up
+            yield temporary
             _copy_permissions(path, temporary)
             _flush(temporary)
             os.replace(temporary, path)
@@ -68,8 +68,8 @@ def replacing_directory(path: str | Path, is_ours: Callable[[Path], bool]) -> It
     try:
         with _said_plainly(path):
             new.mkdir()
-        yield new
         with _said_plainly(path):
+            yield new
             for file in new.rglob("*"):
                 _flush(file)
             _swap(path, new, old)

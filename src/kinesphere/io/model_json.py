@@ -1,7 +1,6 @@
 """The topological model as a JSON file."""
 
 from pathlib import Path
-from typing import Any
 
 from kinesphere.data import TopologicalModel, model_from_dict, model_schema, model_to_dict
 from kinesphere.io.json_files import read_json, write_json
@@ -26,11 +25,6 @@ def write_model(model: TopologicalModel, path: str | Path) -> None:
     write_json(model_to_dict(model), path)
 
 
-def model_json_schema() -> dict[str, Any]:
-    """Return the JSON Schema (draft 2020-12) of a model file."""
-    return model_schema()
-
-
 def write_model_schema(path: str | Path) -> None:
     """Write the JSON Schema of a model file, for editors that check while one types."""
-    write_json(model_json_schema(), path)
+    write_json(model_schema(), path)

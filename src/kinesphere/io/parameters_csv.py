@@ -16,7 +16,8 @@ _ROOT = ["root.x_m", "root.y_m", "root.z_m", "root.qx", "root.qy", "root.qz", "r
 def write_parameters(parameters: Parameters, path: str | Path) -> None:
     """Write the root pose and every joint's angles, twist, residual and flag.
 
-    Angles are printed to 1e-10°, so that rounding moves no point of a body by more than 1e-9 m.
+    Angles are printed to 1e-10° and places to 1e-9 m, so that rounding moves no point of a body by
+    more than 1e-8 m.
     NaN becomes a blank cell. First frame number, movement mask and history are not in the table.
 
     Raises
