@@ -15,6 +15,13 @@ MIN_SPREAD = 0.005
 """m, least rms extent of a marker body beside its longest line: below it is a line, not a body."""
 
 
+SETTLED = 0.003
+"""Change of a shape in one round, as a share of its residual, that ends the rounds: a tenth of
+what hundreds of frames of such residuals leave open."""
+STILL = 1e-8
+"""m, change that ends the rounds where there are no residuals to speak of."""
+
+
 class RigidFit(NamedTuple):
     """Pose of a shape in every frame."""
 
@@ -121,6 +128,7 @@ def fit_shape(
     outlier: float = 0.003,
     rounds: int = 12,
     min_spread: float = MIN_SPREAD,
+    start: Array | None = None,
 ) -> Array | None:
     """Return the shape of a marker body: generalised Procrustes analysis with gaps [1]_.
 
@@ -141,6 +149,8 @@ def fit_shape(
         Most alternations of aligning and averaging.
     min_spread
         m; as `fit_rigid` takes it.
+    start : (n_points, 3) m, optional
+        A shape to begin with, instead of the most usual frame.
 
     Returns
     -------
@@ -153,12 +163,14 @@ def fit_shape(
     .. [1] Gower (1975), Psychometrika 40(1), 33-51, doi:10.1007/BF02291478.
     """
     seen = np.asarray(np.isfinite(points).all(axis=2))
-    start = _usual_frame(points, seen, min_spread)
     if start is None:
-        return None
+        usual_frame = _usual_frame(points, seen, min_spread)
+        if usual_frame is None:
+            return None
+        start = points[usual_frame] - points[usual_frame][seen[usual_frame]].mean(axis=0)
+        start = np.where(seen[usual_frame][:, None], start, np.nan)
+    shape = start
     w0 = np.ones(points.shape[1]) if weights is None else weights
-    shape = np.where(seen[start][:, None], points[start], np.nan)
-    shape = shape - points[start][seen[start]].mean(axis=0)
     doubt = np.ones(seen.shape)
     for _ in range(rounds):
         fit = fit_rigid(shape, points, w0 * doubt, min_spread=min_spread)
@@ -182,7 +194,7 @@ def fit_shape(
         )
         s = np.maximum(outlier, 3 * usual)
         doubt = np.where(known, 1 / (1 + np.where(known, residual / s, 0.0) ** 2) ** 2, 1.0)
-        if change < 1e-7 and not new:
+        if change < max(SETTLED * usual.max(), STILL) and not new:
             break
     return _principal(shape)
 

@@ -84,9 +84,10 @@ def measure_shape(
     """
     n = points.shape[1]
     known = np.zeros(n) if noise is None else noise
+    shape = None
     for _ in range(4 if noise is None else 1):
         weights = 1 / (known**2 + NOISE**2)
-        shape = fit_shape(points, weights, outlier=outlier, min_spread=min_spread)
+        shape = fit_shape(points, weights, outlier=outlier, min_spread=min_spread, start=shape)
         if shape is None or not np.isfinite(shape).all():
             return None
         fit = fit_rigid(shape, points, weights, min_spread=min_spread)

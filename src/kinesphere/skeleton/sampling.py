@@ -38,4 +38,7 @@ def spread_frames(markers: Array, count: int) -> NDArray[np.intp]:
     # a little of plain time keeps a recording without motion evenly sampled
     way += np.linspace(0.0, 0.05 * way[-1] + 1e-9, n_frames)
     wanted = np.linspace(0.0, way[-1], count)
-    return np.unique(np.abs(np.searchsorted(way, wanted)).clip(0, n_frames - 1))
+    after = np.searchsorted(way, wanted).clip(1, n_frames - 1)
+    # the nearest, not the next: the same frames when time runs backwards
+    nearest = np.where(way[after] - wanted < wanted - way[after - 1], after, after - 1)
+    return np.unique(nearest)
