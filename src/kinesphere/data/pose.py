@@ -42,11 +42,11 @@ def motion_from_parameters(parameters: Parameters) -> Motion:
     )
     known = np.isfinite(rotations).all(axis=(2, 3)) & np.isfinite(origins).all(axis=2)
     flags = np.where(known, PoseFlag.MEASURED, PoseFlag.UNSEEN).astype(np.uint8)
-    for told, becomes in (
-        (JointFlag.FILLED, PoseFlag.FILLED),
-        (JointFlag.TWIST_UNKNOWN, PoseFlag.TWIST_UNKNOWN),  # says more: the twist is no measurement
-    ):
-        flags[:, 1:][known[:, 1:] & ((parameters.flags & told) > 0)] = becomes
+    said = np.zeros_like(flags)
+    said[:, 1:] = parameters.flags
+    flags[known & ((said & JointFlag.FILLED) > 0)] = PoseFlag.FILLED
+    # said last, for it says more: the twist is no measurement
+    flags[known & ((said & JointFlag.TWIST_UNKNOWN) > 0)] = PoseFlag.TWIST_UNKNOWN
     return Motion(
         skeleton=skeleton,
         rotations=rotations,
