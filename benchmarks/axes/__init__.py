@@ -1,0 +1,1 @@
+"""Normalization and parameterization, step by step, against truth and against the paper."""

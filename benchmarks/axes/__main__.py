@@ -1,0 +1,101 @@
+"""``python -m benchmarks.axes``: run, print, write; with ``--check`` a missed bar fails."""
+
+import argparse
+import json
+import multiprocessing
+import os
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from benchmarks.axes import angles, estimators, filters, normalization, solved, times
+from benchmarks.axes.page import all_bars, page
+from kinesphere import __version__
+
+ROOT = Path(__file__).parents[2]
+Run = Callable[[str, Callable[..., Any], Sequence[tuple[Any, ...]]], list[Any]]
+
+
+def main() -> int:
+    """Measure everything and write ``axes.json`` and ``parameterization.md``."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    default = Path(os.environ.get("KINESPHERE_DATA", ROOT.parent / "shared" / "data"))
+    parser.add_argument("--data", type=Path, default=default, help="folder of real recordings")
+    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    parser.add_argument("--check", action="store_true", help="fail if a bar is missed")
+    arguments = parser.parse_args()
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+    with multiprocessing.get_context("spawn").Pool(arguments.jobs) as pool:
+
+        def run(name: str, task: Callable[..., Any], tasks: Sequence[tuple[Any, ...]]) -> list[Any]:
+            start = time.perf_counter()
+            results = pool.starmap(task, tasks, chunksize=1)
+            print(f"{name}: {time.perf_counter() - start:.0f} s", file=sys.stderr, flush=True)
+            return results
+
+        found = measure(run, arguments.data)
+    found["times"] = times.run()  # alone, after everything else
+    text = page(found)
+    print(text)
+    (ROOT / "docs/results").mkdir(parents=True, exist_ok=True)
+    (ROOT / "docs/results/parameterization.md").write_text(text, encoding="utf-8")
+    (ROOT / "benchmarks/results/axes.json").write_text(as_json(found), encoding="utf-8")
+    missed = [bar for bar in all_bars(found) if not bar.met]
+    return 1 if missed and arguments.check else 0
+
+
+def measure(run: Run, data: Path) -> dict[str, Any]:
+    """Run every section but the times."""
+    real = run("real recordings", solved.run_real, solved.real_tasks(data))
+    made = run("synthetic performances", solved.run_synthetic, solved.SYNTHETIC_TASKS)
+    usable = [r for r in real if "failure" not in r]
+    paper: dict[str, list[Any]] = {}
+    for result in (*made, *usable):
+        paper.setdefault(result["name"], []).extend(result["paper"])
+    return {
+        "paper": paper,
+        "halves": {r["name"]: r["halves"] for r in usable},
+        "skipped": {r["name"]: r["failure"] for r in real if "failure" in r},
+        "filter": filters.summary(run("filter", filters.run, filters.TASKS)),
+        "normalization": normalization.summary(
+            run("normalization", normalization.run, normalization.TASKS)
+        ),
+        "angles": angles.summary(
+            run("round trip", angles.run_round_trip, angles.TRIP_TASKS),
+            run("branches", angles.run_branches, angles.BRANCH_TASKS),
+            run("cross-talk", angles.run_cross_talk, angles.CROSS_TASKS),
+            run("reach", angles.run_reach, angles.REACH_TASKS),
+            run("twist", angles.run_twist, angles.TWIST_TASKS),
+        ),
+        "axes": estimators.summary(run("axes", estimators.run, estimators.TASKS)),
+        "free": estimators.summary_free(
+            run("free motion", estimators.run_free, estimators.FREE_TASKS)
+        ),
+    }
+
+
+def as_json(found: dict[str, Any]) -> str:
+    """Return the figures as JSON, digits that mean nothing cut."""
+    whole = {
+        "version": __version__,
+        "bars": [bar.as_json() for bar in all_bars(found)],
+        **found,
+    }
+    return json.dumps(_short(whole), allow_nan=False, indent=1, ensure_ascii=False) + "\n"
+
+
+def _short(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _short(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_short(item) for item in value]
+    if isinstance(value, float):
+        return float(f"{value:.5g}") if value == value and abs(value) != float("inf") else None
+    return value
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,75 @@
+"""All sections as one page."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from benchmarks.axes import (
+    angles,
+    estimators,
+    filters,
+    normalization,
+    papers_metrics,
+    repeatability,
+    times,
+)
+from benchmarks.axes.bars import Bar, number
+
+INTRODUCTION = """\
+# Normalization and parameterization, step by step
+
+Written by `python -m benchmarks.axes`; every figure is in `benchmarks/results/axes.json`.
+
+Each step of Sar Dessai, Hornung & Kobbelt (2006) is measured by itself: against joints whose axes,
+angles and rest are known, and on real recordings by what they cannot contradict. Rows in *italics*
+are not from here: the paper's published figures, or those of an earlier prototype.
+
+The known joints: 50 Hz, a limb that stands and sways by 0.3°, then moves four times to both sides
+about one axis (±45°) and four times about the other (±40°) within a minute. Noise is a rotation
+about all three axes: *iid* anew in every frame, *OU* correlated over 0.4 s as soft tissue is,
+*tissue* OU 1° and a tenth of the angle coming back about a random axis 60 ms late.
+"""
+
+
+def all_bars(found: dict[str, Any]) -> list[Bar]:
+    """Return every figure that is held to a number."""
+    return [
+        *filters.bars(found["filter"]),
+        *estimators.bars(found["axes"], found["free"]),
+        *angles.bars(found["angles"]),
+        *normalization.bars(found["normalization"]),
+        *papers_metrics.bars(found["paper"]),
+        *repeatability.bars(found["halves"]),
+    ]
+
+
+def page(found: dict[str, Any]) -> str:
+    """Return the results as Markdown."""
+    return "\n".join(
+        [
+            INTRODUCTION,
+            scoreboard(all_bars(found)),
+            filters.page(found["filter"]),
+            estimators.page(found["axes"], found["free"]),
+            angles.page(found["angles"]),
+            normalization.page(found["normalization"]),
+            papers_metrics.page(found["paper"], found["skipped"]),
+            repeatability.page(found["halves"]),
+            times.page(found["times"]),
+        ]
+    )
+
+
+def scoreboard(bars: Sequence[Bar]) -> str:
+    """Return what was asked for and whether it is there."""
+    met = sum(bar.met for bar in bars)
+    lines = [
+        f"**{met} of {len(bars)} figures meet what is asked of them**, numbers that were set "
+        "before anything was measured here.\n",
+        "| | figure | measured | asked | |",
+        "|---|---|---:|---:|---|",
+    ]
+    for bar in bars:
+        unit = f" {bar.unit}" if bar.unit else ""
+        cells = (bar.section, bar.what, number(bar.value) + unit, bar.asked, bar.verdict)
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
