@@ -232,6 +232,7 @@ def test_a_marker_called_like_a_joint_keeps_its_name(solution, tmp_path):
 
 
 def test_a_solved_folder_is_replaced_and_nothing_of_the_old_stays(solution, folder):
+    (folder / ".DS_Store").touch()  # a look at it in Finder must not lock it
     write_solution(replace(solution, model_name="other"), folder)
     assert read_solution(folder).model_name == "other"
     assert not (folder / "report.html").exists()

@@ -34,8 +34,8 @@ FILES = (
     "summary.json",
 )
 """What ``write_solution`` writes by itself."""
-_OTHERS = ("report.html", "motion.glb")
-"""What may stand beside them."""
+_BESIDE = ("report.html", ".DS_Store", "Thumbs.db", "desktop.ini")
+"""What may stand beside them: the report, and what file managers leave wherever they look."""
 _C3D = "c3d"
 
 
@@ -93,7 +93,7 @@ def check_solution_place(directory: str | Path, extra: Iterable[str] = ()) -> No
 
 def _only(extra: Iterable[str]) -> Callable[[Path], bool]:
     """Return what tells a folder of nothing but a solution's files."""
-    ours = {*FILES, *_OTHERS, *extra}
+    ours = {*FILES, *_BESIDE, *extra}
     return lambda folder: {entry.name for entry in folder.iterdir()} <= ours
 
 
