@@ -34,8 +34,8 @@ def test_a_file_takes_the_place_of_the_old_one(tmp_path):
     with replacing(path) as new:
         assert (new.parent, new.suffix) == (path.parent, ".txt")
         new.write_text("new")
-        assert path.read_text() == "old"
-    assert path.read_text() == "new"
+        assert path.read_text(encoding="utf-8") == "old"
+    assert path.read_text(encoding="utf-8") == "new"
     assert names(tmp_path) == ["a.txt"]
 
 
@@ -44,7 +44,7 @@ def test_a_failure_leaves_everything_as_it_was(tmp_path):
     path.write_text("old")
     with pytest.raises(Failure), replacing(path) as new:
         fail_halfway(new)
-    assert path.read_text() == "old"
+    assert path.read_text(encoding="utf-8") == "old"
     assert names(tmp_path) == ["a.txt"]
 
 
@@ -122,7 +122,7 @@ def test_a_folder_appears_and_is_replaced_whole(tmp_path):
         with replacing_directory(place, ours) as new:
             assert names(new) == []
             fill(new, text)
-        assert (place / "inner" / "deep").read_text() == text
+        assert (place / "inner" / "deep").read_text(encoding="utf-8") == text
         assert names(place) == ["inner", "mark"]
         assert names(place.parent) == ["where"]
 
@@ -158,5 +158,5 @@ def test_a_failure_leaves_the_folder_as_it_was(tmp_path):
         fill(new, "first")
     with pytest.raises(Failure), replacing_directory(place, ours) as new:
         fail_halfway(new / "mark")
-    assert (place / "inner" / "deep").read_text() == "first"
+    assert (place / "inner" / "deep").read_text(encoding="utf-8") == "first"
     assert names(tmp_path) == ["place"]

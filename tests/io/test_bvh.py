@@ -30,7 +30,7 @@ class Evaluated(NamedTuple):
 
 def evaluate(path):
     """Read a BVH file and run its forward kinematics, from the format's description alone."""
-    words = path.read_text().split()
+    words = path.read_text(encoding="utf-8").split()
     assert words[0] == "HIERARCHY"
     parents, offsets, channels, inside, last, i = {}, {}, {}, [], None, 1
     while words[i] != "MOTION":
@@ -189,7 +189,7 @@ def test_an_unseen_limb_keeps_its_last_known_turn(odd_motion, tmp_path):
     gappy = replace(odd_motion, rotations=rotations, origins=origins, flags=flags)
     write_bvh(odd_motion, tmp_path / "whole.bvh")
     write_bvh(gappy, tmp_path / "gappy.bvh")
-    assert "nan" not in (tmp_path / "gappy.bvh").read_text().lower()
+    assert "nan" not in (tmp_path / "gappy.bvh").read_text(encoding="utf-8").lower()
     whole, held = (evaluate(tmp_path / f"{name}.bvh") for name in ("whole", "gappy"))
 
     def local(bvh, limb):

@@ -43,7 +43,7 @@ def test_a_recording_there_and_back(recording, tmp_path):
 def test_what_a_recording_looks_like(recording, tmp_path):
     small = replace(recording, markers=[[[1, 2, 3]], [[np.nan] * 3]], labels=("C7",), rate=4.0)
     write_csv(small, tmp_path / "a.csv")
-    assert (tmp_path / "a.csv").read_text() == (
+    assert (tmp_path / "a.csv").read_text(encoding="utf-8") == (
         "time_s,C7.x_m,C7.y_m,C7.z_m\n"
         "0.000000000,1.000000000,2.000000000,3.000000000\n"
         "0.250000000,,,\n"
@@ -112,7 +112,7 @@ def test_table_and_skeleton_alone_rebuild_every_pose(request, tmp_path, of):
 
 def test_the_columns_are_those_of_the_documents(performance, tmp_path):
     write_parameters(performance.parameters, tmp_path / "parameters.csv")
-    head, first = (tmp_path / "parameters.csv").read_text().splitlines()[:2]
+    head, first = (tmp_path / "parameters.csv").read_text(encoding="utf-8").splitlines()[:2]
     names = head.split(",")
     assert names[:8] == [
         *("time_s", "root.x_m", "root.y_m", "root.z_m"),
@@ -135,7 +135,7 @@ def test_the_columns_are_those_of_the_documents(performance, tmp_path):
 
 def test_quaternions_have_one_sign(odd_parameters, tmp_path):
     write_parameters(odd_parameters, tmp_path / "parameters.csv")
-    head, *rows = (tmp_path / "parameters.csv").read_text().splitlines()
+    head, *rows = (tmp_path / "parameters.csv").read_text(encoding="utf-8").splitlines()
     at = head.split(",").index("root.qw")
     assert min(float(row.split(",")[at]) for row in rows) >= 0
 
@@ -144,7 +144,7 @@ def test_columns_may_stand_in_any_order_with_others_among_them(performance, tmp_
     truth = performance.parameters
     path = tmp_path / "parameters.csv"
     write_parameters(truth, path)
-    rows = [line.split(",")[::-1] for line in path.read_text().splitlines()]
+    rows = [line.split(",")[::-1] for line in path.read_text(encoding="utf-8").splitlines()]
     rows = [[row[-1], "weather" if i == 0 else "7", *row[:-1]] for i, row in enumerate(rows)]
     path.write_text("\n".join(",".join(row) for row in rows) + "\n")
     assert_allclose(read_parameters(path, truth.skeleton).twists, truth.twists, atol=1e-11)
@@ -173,7 +173,7 @@ def test_the_skeleton_beside_the_table_is_found(performance, tmp_path):
 def test_a_damaged_table_is_named(performance, tmp_path, old, new, said):
     path = tmp_path / "parameters.csv"
     write_parameters(performance.parameters, path)
-    text = path.read_text()
+    text = path.read_text(encoding="utf-8")
     assert old in text
     path.write_text(text.replace(old, new))
     with pytest.raises(UnreadableFile, match=said):

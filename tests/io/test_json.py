@@ -74,7 +74,7 @@ def test_a_skeleton_to_the_last_bit(skeleton, tmp_path):
 
 def test_what_a_skeleton_looks_like(skeleton, tmp_path):
     write_skeleton(skeleton, tmp_path / "skeleton.json")
-    text = (tmp_path / "skeleton.json").read_text()
+    text = (tmp_path / "skeleton.json").read_text(encoding="utf-8")
     content = json.loads(text, parse_constant=refuse)
     root, head = content["limbs"][:2]
     assert root["parent"] is None
@@ -111,7 +111,7 @@ def test_what_a_skeleton_looks_like(skeleton, tmp_path):
 def test_a_damaged_skeleton_is_named(skeleton, tmp_path, change, said):
     path = tmp_path / "skeleton.json"
     write_skeleton(skeleton, path)
-    content = json.loads(path.read_text())
+    content = json.loads(path.read_text(encoding="utf-8"))
     change(content)
     path.write_text(json.dumps(content))
     with pytest.raises(UnreadableFile, match=said) as caught:

@@ -19,7 +19,7 @@ PLAYED_BACK = 1e-7  # m; the motion file has nine decimals of a degree and of a 
 
 def read_mot(path):
     """Return coordinate → values in rad and m, from the format's description alone."""
-    head, _, rest = path.read_text().partition("endheader\n")
+    head, _, rest = path.read_text(encoding="utf-8").partition("endheader\n")
     assert head.startswith("Coordinates\nversion=1\n")
     assert "inDegrees=yes\n" in head
     names, *rows = (line.split("\t") for line in rest.splitlines())

@@ -243,7 +243,7 @@ def test_other_peoples_files_are_never_touched(solution, folder):
     (folder / "thesis.txt").write_text("ten years")
     with pytest.raises(KinesphereError, match="out"):
         write_solution(solution, folder)
-    assert (folder / "thesis.txt").read_text() == "ten years"
+    assert (folder / "thesis.txt").read_text(encoding="utf-8") == "ten years"
     assert read_solution(folder).model_name == "bodies"
 
 

@@ -320,7 +320,9 @@ def test_written_and_read_again(recording, tmp_path, unit):
     assert again.details["trc"]["unit"] == unit
     # what was printed once is printed the same again
     write_trc(again, tmp_path / "b.trc", unit=unit)
-    first, second = ((tmp_path / f"{x}.trc").read_text().split("\n")[1:] for x in "ab")
+    first, second = (
+        (tmp_path / f"{x}.trc").read_text(encoding="utf-8").split("\n")[1:] for x in "ab"
+    )
     assert first == second
 
 
@@ -356,7 +358,12 @@ def test_the_axes_of_the_file_come_back(recording, tmp_path):
 def test_the_first_time_comes_back(read_text, tmp_path):
     late = read_text(PLAIN.replace("0.0", "7.0"))
     write_trc(late, tmp_path / "b.trc")
-    assert (tmp_path / "b.trc").read_text().splitlines()[6].startswith("1\t7.000000000\t")
+    assert (
+        (tmp_path / "b.trc")
+        .read_text(encoding="utf-8")
+        .splitlines()[6]
+        .startswith("1\t7.000000000\t")
+    )
 
 
 def test_an_unknown_unit_to_write_in(recording, tmp_path):
