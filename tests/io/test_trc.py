@@ -199,6 +199,14 @@ def test_decimated_frames_count_in_steps(read_text):
     assert "the time column counts" in warnings_of(recording)
 
 
+@pytest.mark.parametrize(("clock", "rate"), [(50.3, 50.0), (51.5, 51.5)])
+def test_a_clock_that_is_a_little_off_is_no_other_rate(read_text, clock, rate):
+    rows = "".join(f"{n}\t{(n - 1) / clock:.6f}\t1\t2\t3\t4\t5\t6\n" for n in range(1, 502))
+    recording = read_text(HEAD + rows)
+    assert recording.rate == pytest.approx(rate)
+    assert ("the time column counts" in warnings_of(recording)) == (rate != 50.0)
+
+
 @pytest.mark.parametrize("told", ["", "0", "n/a", "-50", "nan", "inf"])
 def test_the_time_column_gives_the_rate_the_header_lacks(read_text, told):
     recording = read_text(PLAIN.replace("50.00\t50.00\t4", f"{told}\t50.00\t4"))

@@ -78,6 +78,11 @@ def test_an_underscore_ends_a_prefix_in_a_learnt_model_as_well(rng):
     assert findings(match_labels(recording_of(rng, labels), model))["subject"] == ""
 
 
+@pytest.mark.parametrize(("n", "subjects"), [(9, ()), (10, ("Anna",))])
+def test_few_labels_with_an_underscore_may_be_chance(rng, n, subjects):
+    assert find_subjects(recording_of(rng, prefixed("Anna", CMU.labels[:n], "_"))) == subjects
+
+
 def test_a_known_word_is_never_split(rng):
     """A model learnt from labels that were never stripped."""
     labels = prefixed("Rig", CMU.labels, "_")
@@ -269,11 +274,16 @@ def test_a_layout_is_recognised_to_nine_tenths(rng, model):
 
 
 def test_of_two_layouts_the_better_covered_one_is_chosen(rng):
-    assert choose_model(recording_of(rng, {*CMU.labels, *GAIT.required} - {"LPSI"})).name == "cmu41"
-    assert (
-        choose_model(recording_of(rng, {*CMU.labels, *GAIT.required} - {"LBWT"})).name
-        == "plugin-gait"
-    )
+    both = dict.fromkeys((*CMU.labels, *GAIT.required))
+    for lost, chosen in (("LPSI", "cmu41"), ("LBWT", "plugin-gait")):
+        file = recording_of(rng, [label for label in both if label != lost])
+        assert choose_model(file).name == chosen
+
+
+def test_of_two_layouts_that_are_all_there_the_larger_one_is_chosen(rng):
+    both = dict.fromkeys((*CMU.labels, *GAIT.labels))
+    assert len(GAIT.labels) > len(CMU.labels)
+    assert choose_model(recording_of(rng, both)).name == "plugin-gait"
 
 
 def test_a_recording_without_markers_wears_nothing():

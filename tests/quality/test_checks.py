@@ -111,13 +111,36 @@ def test_the_same_step_at_a_low_rate_is_no_jump(clean):
     assert check_recording(replace(spoiled(clean, "LWRA", 20, up), rate=12.0)) == ()
 
 
+@pytest.mark.parametrize(("gone_s", "jumps"), [(0.9, True), (1.1, False)])
+def test_over_a_long_gap_nobody_knows_how_fast_it_was(clean, gone_s, jumps):
+    slow = replace(clean, rate=20.0)
+    gone = spoiled(slow, "LWRA", slice(10, 10 + int(gone_s * 20)), np.nan)
+    away = spoiled(gone, "LWRA", slice(10 + int(gone_s * 20), None), [0.0, 80.0, 0.0])
+    assert ("jump" in {f.rule for f in check_recording(away)}) == jumps
+
+
+def test_a_marker_that_hardly_moves_is_no_constant(clean, rng):
+    jitter = 1.0 + rng.normal(scale=1e-5, size=(clean.n_frames, 3))
+    assert check_recording(spoiled(replace(clean, rate=40.0), "STRN", slice(None), jitter)) == ()
+
+
+@pytest.mark.parametrize(("n_missing", "rules"), [(29, []), (31, ["gap"])])
+def test_a_rare_gap_counts_from_half_a_second_on(clean, n_missing, rules):
+    to_and_fro = np.concatenate([clean.markers, clean.markers[::-1]] * 8)
+    long = replace(clean, markers=to_and_fro)
+    found = check_recording(spoiled(long, "C7", slice(100, 100 + n_missing), np.nan))
+    assert [f.rule for f in found] == rules
+
+
 def test_unlabelled_points_may_come_and_go(clean):
     labels = tuple("*7" if label == "LTOE" else label for label in clean.labels)
     ghost = replace(spoiled(clean, "LTOE", slice(10, 41), np.nan), labels=labels)
     assert check_recording(ghost) == ()
 
 
-@pytest.mark.parametrize(("factor", "shown"), [(1e3, "e+03"), (1e-3, "0.00")])
+@pytest.mark.parametrize(
+    ("factor", "shown"), [(1e3, "e+03"), (1e-3, "0.00"), (2.0, "3.3"), (0.15, "0.24")]
+)
 def test_a_giant_or_a_dwarf_has_the_wrong_unit(clean, factor, shown):
     found = [
         f

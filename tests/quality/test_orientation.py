@@ -160,6 +160,19 @@ class TestAgainstTheFile:
             == "+y"
         )
 
+    def test_a_few_frames_on_the_hands_do_not_hinder_it(self, walker):
+        markers = walker.markers.copy()
+        markers[41:] *= [1, -1, -1]
+        world = orient(replace(walker, markers=markers, up="-y"))
+        assert step(world).findings["upright_share"]["+y"] == pytest.approx(41 / 47, abs=0.02)
+        assert step(world).findings["up"] == "+y"
+
+    def test_someone_who_leans_by_half_is_upright_along_nothing(self, statue):
+        c = np.sqrt(0.5)
+        lean = np.array([[c, c, 0], [-c, c, 0], [0, 0, 1]])
+        world = orient(replace(statue, markers=statue.markers @ lean.T, up="+y"))
+        assert set(step(world).findings["upright_share"].values()) == {0.0}
+
     def test_an_acrobat_does_not(self, walker):
         markers = walker.markers.copy()
         markers[20:] *= [1, -1, -1]  # more than half on the hands
@@ -250,6 +263,23 @@ class TestWhoShowsIt:
         )
         (warning,) = step(orient(replace(walker, labels=swapped))).warnings
         assert "left and right labels are exchanged" in warning
+
+    @pytest.mark.parametrize("mirrored", [False, True])
+    def test_feet_without_heels_tell_a_mirror_image_by_the_ankle(self, walker, mirrored):
+        few = [c for c, x in enumerate(walker.labels) if x[1:] in ("KNE", "ANK", "TOE", "FWT")]
+        legs = replace(
+            walker, markers=walker.markers[:, few], labels=tuple(walker.labels[c] for c in few)
+        )
+        found = step(
+            orient(exported(legs, np.diag([1.0, 1, -1 if mirrored else 1]), "+y"))
+        ).findings
+        assert found["right_handed_share"] == (0.0 if mirrored else 1.0)
+        assert found["mirrored"] == mirrored
+
+    def test_a_flat_image_of_a_person_tells_no_handedness(self, walker):
+        """All depth is noise: each frame would say something else."""
+        flat = replace(walker, markers=walker.markers * [0.005, 1, 1])
+        assert step(orient(flat)).findings["right_handed_share"] is None
 
     def test_half_exchanged_sides_are_doubted(self, walker):
         pairs = [("LFWT", "RFWT"), ("LBWT", "RBWT")]
