@@ -1,4 +1,4 @@
-"""``python -m benchmarks.speed``: seconds and microseconds a frame, stage by stage."""
+"""``python -m benchmarks.speed``: against the paper, stage by stage, and as recordings grow."""
 
 import argparse
 import json
@@ -6,15 +6,16 @@ import platform
 import subprocess
 import sys
 import tempfile
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.speed.clock import StageClock, median_seconds
+from benchmarks.speed.page import page
+from benchmarks.speed.paper import paper_comparison
 from kinesphere import __version__
-from kinesphere.data import Solution, motion_from_parameters
+from kinesphere.data import Recording, Solution, motion_from_parameters
 from kinesphere.io import read, write, write_solution
 from kinesphere.pipeline import solve
 from kinesphere.synthetic import Performance, make_performance, spoil_with_noise
@@ -22,25 +23,33 @@ from kinesphere.synthetic.layout import Layout
 
 ROOT = Path(__file__).parents[2]
 LAYOUTS: tuple[Layout, ...] = ("bodies", "cmu41")
-_TITLES = {"bodies": "12 marker bodies", "cmu41": "CMU layout, built-in model"}
+GROWTH = (1_000, 3_000, 10_000, 30_000, 100_000)
 
 
 def main() -> int:
-    """Time the line and write ``speed.json`` and ``speed.md``."""
+    """Time everything and write ``speed.json`` and ``speed.md``."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--frames", type=int, default=24_000)
-    parser.add_argument("--repeats", type=int, default=3, help="the fastest counts")
+    parser.add_argument("--twin-frames", type=int, default=400)
+    parser.add_argument("--repeats", type=int, default=3, help="runs, of which the median counts")
     arguments = parser.parse_args()
+    layouts, paper = {}, {}
+    for layout in LAYOUTS:
+        performance, recording = _performance(layout, arguments.frames)
+        layouts[layout], solution = _line(performance, recording, layout, arguments.repeats)
+        if layout == "bodies":
+            paper = paper_comparison(
+                performance, solution, arguments.twin_frames, 3 * arguments.repeats
+            )
     results = {
         "version": __version__,
         "python": platform.python_version(),
         "numpy": np.__version__,
         "n_frames": arguments.frames,
         "import_s": _import_seconds(),
-        "layouts": {
-            layout: _layout_seconds(layout, arguments.frames, arguments.repeats)
-            for layout in LAYOUTS
-        },
+        "paper": paper,
+        "layouts": layouts,
+        "growth": [_growth(n_frames) for n_frames in GROWTH],
     }
     text = page(results)
     print(text)
@@ -53,87 +62,85 @@ def main() -> int:
     return 0
 
 
-def page(results: dict[str, Any]) -> str:
-    """Return the results as Markdown."""
-    n_frames, layouts = results["n_frames"], results["layouts"]
-    steps = list(next(iter(layouts.values()))["seconds"])
-    heads = " | ".join(f"{_TITLES[name]}, s | µs a frame" for name in layouts)
-    lines = [
-        "# Speed",
-        "",
-        "Written by `make bench` (`python -m benchmarks.speed`) into",
-        f"`benchmarks/results/speed.json`. A synthetic performance of {n_frames:,} frames with",
-        f"1 mm noise; Python {results['python']}, NumPy {results['numpy']}, one BLAS thread,",
-        "kernels compiled before. The fastest of a few runs on a machine with other work to do:",
-        "read the figures as upper bounds. `import kinesphere` with everything `solve` needs takes",
-        f"{results['import_s']:.1f} s.",
-        "",
-        f"| step | {heads} |",
-        "|---|" + "---:|---:|" * len(layouts),
-    ]
-    for step in [*steps, "whole line"]:
-        cells = []
-        for layout in layouts.values():
-            seconds = layout["line_s"] if step == "whole line" else layout["seconds"][step]
-            cells.append(f"{seconds:.3f} | {1e6 * seconds / n_frames:.1f}")
-        lines.append(f"| {step} | " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n"
+def _performance(layout: Layout, n_frames: int) -> tuple[Performance, Recording]:
+    warm = make_performance(np.random.default_rng(0), layout=layout, calibration_s=20, free_s=5)
+    _solve(warm, warm.recording, layout)  # compiles the kernels
+    performance = make_performance(np.random.default_rng(1), layout=layout, n_frames=n_frames)
+    return performance, spoil_with_noise(performance.recording, np.random.default_rng(2))
 
 
-def _layout_seconds(layout: Layout, n_frames: int, repeats: int) -> dict[str, Any]:
-    generator = np.random.default_rng(0)
-    warm = make_performance(generator, layout=layout, calibration_s=20, free_s=5)
-    _solve(warm)  # compiles the kernels
-    make, performance = _fastest(
-        lambda: make_performance(np.random.default_rng(1), layout=layout, n_frames=n_frames),
-        repeats,
-    )
-    recording = spoil_with_noise(performance.recording, generator)
-    solved: list[tuple[float, Solution]] = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        model = performance.model if layout == "bodies" else None
-        solution = solve(recording, model, calibration=performance.calibration)
-        solved.append((time.perf_counter() - start, solution))
-    line_s, solution = min(solved, key=lambda pair: pair[0])
+def _line(
+    performance: Performance, recording: Recording, layout: Layout, repeats: int
+) -> tuple[dict[str, Any], Solution]:
+    line_s, stages, solution = _median_line(performance, recording, layout, repeats)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "recording.c3d"
-        written, _ = _fastest(lambda: write(recording, path), repeats)
-        reading, _ = _fastest(lambda: read(path), repeats)
-        saved, _ = _fastest(lambda: write_solution(solution, Path(folder) / "solved"), 1)
-    rebuilt, _ = _fastest(lambda: motion_from_parameters(solution.parameters), repeats)
+        written, _ = median_seconds(lambda: write(recording, path), repeats)
+        reading, _ = median_seconds(lambda: read(path), repeats)
+        saved, _ = median_seconds(lambda: write_solution(solution, Path(folder) / "solved"), 1)
+    rebuilt, _ = median_seconds(lambda: motion_from_parameters(solution.parameters), repeats)
     seconds = {
-        "make the performance": make,
-        "write C3D": written,
         "read C3D": reading,
-        **dict(solution.seconds),
+        **stages,
         "parameters back to motion": rebuilt,
+        "write C3D": written,
         "write the solved folder": saved,
     }
-    return {
+    shown = {
         "n_markers": recording.n_markers,
         "n_limbs": len(solution.skeleton.limbs),
         "line_s": line_s,
         "seconds": seconds,
     }
+    return shown, solution
 
 
-def _solve(performance: Performance) -> Solution:
-    return solve(performance.recording, performance.model, calibration=performance.calibration)
+def _growth(n_frames: int) -> dict[str, Any]:
+    performance = make_performance(
+        np.random.default_rng(3), rate=50.0, calibration_s=20.0, n_frames=n_frames
+    )
+    recording = spoil_with_noise(performance.recording, np.random.default_rng(4))
+    repeats = 3 if n_frames <= 10_000 else 1
+    line_s, stages, _ = _median_line(performance, recording, "bodies", repeats)
+    return {"n_frames": n_frames, "line_s": line_s, "seconds": stages}
 
 
-def _fastest(call: Callable[[], Any], repeats: int) -> tuple[float, Any]:
-    best, result = np.inf, None
-    for _ in range(repeats):
-        start = time.perf_counter()
-        result = call()
-        best = min(best, time.perf_counter() - start)
-    return float(best), result
+def _median_line(
+    performance: Performance, recording: Recording, layout: Layout, repeats: int
+) -> tuple[float, dict[str, float], Solution]:
+    """Return the median seconds of the line and of each stage, and a solution."""
+    clocks = []
+
+    def run() -> Solution:
+        clocks.append(StageClock())
+        solution = _solve(performance, recording, layout, clocks[-1])
+        clocks[-1].stop()
+        return solution
+
+    line_s, solution = median_seconds(run, repeats)
+    stages = {
+        stage: float(np.median([clock.seconds[stage] for clock in clocks]))
+        for stage in clocks[0].seconds
+    }
+    return line_s, stages, solution
+
+
+def _solve(
+    performance: Performance,
+    recording: Recording,
+    layout: Layout,
+    clock: StageClock | None = None,
+) -> Solution:
+    model = performance.model if layout == "bodies" else None
+    return solve(recording, model, calibration=performance.calibration, progress=clock)
 
 
 def _import_seconds() -> float:
-    command = [sys.executable, "-c", "import kinesphere.pipeline"]
-    return _fastest(lambda: subprocess.run(command, check=True), 2)[0]
+    """Return the processor time a new process takes to import what ``solve`` needs, in s."""
+    program = "import time, kinesphere.pipeline; print(time.process_time())"
+    command = [sys.executable, "-c", program]
+    runs = [subprocess.run(command, check=True, capture_output=True, text=True) for _ in range(3)]
+    return float(np.median([float(run.stdout) for run in runs]))
 
 
 sys.exit(main())
