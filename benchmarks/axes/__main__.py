@@ -15,6 +15,8 @@ from benchmarks.axes.page import all_bars, page
 from kinesphere import __version__
 
 ROOT = Path(__file__).parents[2]
+RESULTS = ROOT / "benchmarks" / "results" / "axes.json"
+PAGE = ROOT / "docs" / "results" / "parameterization.md"
 Run = Callable[[str, Callable[..., Any], Sequence[tuple[Any, ...]]], list[Any]]
 
 
@@ -25,10 +27,28 @@ def main() -> int:
     parser.add_argument("--data", type=Path, default=default, help="folder of real recordings")
     parser.add_argument("--jobs", type=int, default=2, help="processes")
     parser.add_argument("--check", action="store_true", help="fail if a bar is missed")
+    parser.add_argument(
+        "--page", action="store_true", help="measure nothing, write the page of the last figures"
+    )
     arguments = parser.parse_args()
+    if arguments.page:
+        found = json.loads(RESULTS.read_text(encoding="utf-8"))
+    else:
+        found = measured(arguments.data, arguments.jobs)
+        RESULTS.write_text(as_json(found), encoding="utf-8")
+    text = page(found)
+    print(text)
+    PAGE.parent.mkdir(parents=True, exist_ok=True)
+    PAGE.write_text(text, encoding="utf-8")
+    missed = [bar for bar in all_bars(found) if not bar.met]
+    return 1 if missed and arguments.check else 0
+
+
+def measured(data: Path, jobs: int) -> dict[str, Any]:
+    """Run every section, the times alone and last."""
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(name, "1")
-    with multiprocessing.get_context("spawn").Pool(arguments.jobs) as pool:
+    with multiprocessing.get_context("spawn").Pool(jobs) as pool:
 
         def run(name: str, task: Callable[..., Any], tasks: Sequence[tuple[Any, ...]]) -> list[Any]:
             start = time.perf_counter()
@@ -36,15 +56,9 @@ def main() -> int:
             print(f"{name}: {time.perf_counter() - start:.0f} s", file=sys.stderr, flush=True)
             return results
 
-        found = measure(run, arguments.data)
-    found["times"] = times.run()  # alone, after everything else
-    text = page(found)
-    print(text)
-    (ROOT / "docs/results").mkdir(parents=True, exist_ok=True)
-    (ROOT / "docs/results/parameterization.md").write_text(text, encoding="utf-8")
-    (ROOT / "benchmarks/results/axes.json").write_text(as_json(found), encoding="utf-8")
-    missed = [bar for bar in all_bars(found) if not bar.met]
-    return 1 if missed and arguments.check else 0
+        found = measure(run, data)
+    found["times"] = times.run()
+    return found
 
 
 def measure(run: Run, data: Path) -> dict[str, Any]:
@@ -78,16 +92,25 @@ def measure(run: Run, data: Path) -> dict[str, Any]:
 
 
 def as_json(found: dict[str, Any]) -> str:
-    """Return the figures as JSON, digits that mean nothing cut."""
-    whole = {
-        "version": __version__,
-        "bars": [bar.as_json() for bar in all_bars(found)],
-        **found,
-    }
-    return json.dumps(_short(whole), allow_nan=False, indent=1, ensure_ascii=False) + "\n"
+    """Return the figures as JSON, one line for each part of a section."""
+    whole = {"version": __version__, "bars": [bar.as_json() for bar in all_bars(found)], **found}
+    return _lines(_short(whole), depth=2) + "\n"
+
+
+def _lines(value: Any, depth: int) -> str:
+    """Return JSON with a line for each entry of the outer ``depth`` levels."""
+    if depth and isinstance(value, dict) and value:
+        names = [json.dumps(key, ensure_ascii=False) for key in value]
+        parts = [_lines(item, depth - 1) for item in value.values()]
+        entries = [f"{name}: {part}" for name, part in zip(names, parts, strict=True)]
+        return "{\n" + ",\n".join(entries) + "\n}"
+    if depth and isinstance(value, list) and value:
+        return "[\n" + ",\n".join(_lines(item, depth - 1) for item in value) + "\n]"
+    return json.dumps(value, allow_nan=False, ensure_ascii=False)
 
 
 def _short(value: Any) -> Any:
+    """Return figures without digits that mean nothing; null for no number."""
     if isinstance(value, dict):
         return {key: _short(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

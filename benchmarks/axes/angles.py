@@ -99,7 +99,8 @@ def _cross_talk(joint: TrueJoint, found: Parameters) -> float:
 
 def run_reach(noise: str, seed: int) -> dict[str, float]:
     """Return percent of frames that axes cannot reach, and that the program flags."""
-    joint = make_free_motion(np.random.default_rng([5, seed]), NEARLY_SQUARE, NOISES[noise])
+    rng = np.random.default_rng([5, seed])
+    joint = make_free_motion(rng, NEARLY_SQUARE, NOISES[noise], amplitudes=(100.0, 60.0))
     found = reused(joint, joint.skeleton)
     return {
         "missed": 100 * float((found.residuals[:, 0] > 1e-6).mean()),
@@ -208,7 +209,8 @@ Cross-talk: rms of the angle about one axis while the limb moves about the other
 | | median | worst |
 |---|---:|---:|"""
 _REACH = """
-Noise carries the limb to where the axes cannot take it (free motion, true axes):
+Noise carries the limb to where the axes cannot take it (free motion, ±100° about the
+first axis and ±60° about the second, true axes):
 """
 _TWIST = """
 Twist: the closed form against the paper's sampling, every degree. The two differ by {apart}° at
@@ -232,7 +234,7 @@ def page(found: dict[str, Any]) -> str:
     """Return the section."""
     twist = found["twist"]
     lines = [
-        _TRIP.format(trip=number(found["round_trip_rad"]), regular=found["regular_percent"]),
+        _TRIP.format(trip=f"{found['round_trip_rad']:.0e}", regular=found["regular_percent"]),
         "| branch | " + " | ".join(SWINGS) + " |",
         "|---|" + "---:|" * len(SWINGS),
     ]

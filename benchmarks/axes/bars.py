@@ -30,6 +30,15 @@ class Bar:
         return "met" if self.met else "**missed**"
 
     @property
+    def measured(self) -> str:
+        """The figure with its unit."""
+        if not math.isfinite(self.value):
+            return "–"
+        if self.unit == "rad":
+            return f"{self.value:.0e} rad"
+        return f"{number(self.value)} {self.unit}" if self.unit else f"{self.value:.3g}"
+
+    @property
     def asked(self) -> str:
         """The bar with its direction and unit."""
         return f"{'≥' if self.at_least else '≤'} {self.bar:g} {self.unit}".rstrip()
@@ -51,7 +60,7 @@ def number(value: float | None, digits: int = 3) -> str:
     """Return a number in as many digits as mean something; – for none."""
     if value is None or not math.isfinite(value):
         return "–"
-    if value == 0:
+    if abs(value) < 1e-9:
         return "0"
     size = abs(value)
     if size < 0.0005:

@@ -45,7 +45,9 @@ PROTOCOLS = {
     "one pose": Protocol("stands once", 1, 0),
     "ten poses": Protocol("stands ten times, each time differently", 10, 0),
     "poses of all kinds": Protocol("stands six times, six large poses between", 6, 6),
-    "with joint errors": Protocol("the same, joint centres 10 mm off", 6, 6, 10.0),
+    "with joint errors": Protocol(
+        "does the same; joint centres are off by 10 mm rms in each direction", 6, 6, 10.0
+    ),
 }
 PUBLISHED = (6.82, 3.62)
 

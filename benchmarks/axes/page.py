@@ -12,7 +12,7 @@ from benchmarks.axes import (
     repeatability,
     times,
 )
-from benchmarks.axes.bars import Bar, number
+from benchmarks.axes.bars import Bar
 
 INTRODUCTION = """\
 # Normalization and parameterization, step by step
@@ -69,7 +69,6 @@ def scoreboard(bars: Sequence[Bar]) -> str:
         "|---|---|---:|---:|---|",
     ]
     for bar in bars:
-        unit = f" {bar.unit}" if bar.unit else ""
-        cells = (bar.section, bar.what, number(bar.value) + unit, bar.asked, bar.verdict)
+        cells = (bar.section, bar.what, bar.measured, bar.asked, bar.verdict)
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"

@@ -236,5 +236,5 @@ def _line(name: str, pool: Mapping[str, Any]) -> str:
 
 
 def _whole(value: float) -> float:
-    """Return a deviation without what rounding alone leaves."""
-    return 0.0 if abs(value) < 1e-6 else value
+    """Return a deviation in mm or deg without what nobody could measure."""
+    return 0.0 if abs(value) < 5e-4 else value

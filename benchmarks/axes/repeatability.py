@@ -41,12 +41,19 @@ def half_rows(motion: Motion, whole: Parameters) -> list[dict[str, Any]]:
             "held_out_mm": _mm(carried.residuals[second, j]),
             "own_mm": _mm(halves[1].residuals[second, j]),
         }
+        row["enough"] = all(_enough(half, joint.name) for half in halves)
         if first.axes_source == last.axes_source == "movement":
             a, b = np.asarray(first.axes), np.asarray(last.axes)
             order = matched(b, a) if len(a) == 2 else list(range(len(a)))
             row["halves_deg"] = line_angles(a, b[order]).tolist()
         rows.append(row)
     return rows
+
+
+def _enough(half: Parameters, joint: str) -> bool:
+    """Return whether a half moves far enough about each of its axes to speak against the whole."""
+    findings: Any = half.history[-1].findings["joints"]
+    return bool(min(findings[joint].get("ranges_deg") or [0.0]) >= KEEP.axes.smallest_range)
 
 
 def _mm(residuals: np.ndarray) -> float | None:
@@ -75,19 +82,21 @@ def mirror_difference(rows: Sequence[Mapping[str, Any]]) -> float | None:
 
 
 def contradictions(sources: Mapping[str, Sequence[Mapping[str, Any]]]) -> dict[str, list[str]]:
-    """Return joints that got their own axes, and those whose halves contradict them unflagged."""
-    given, bad = [], []
+    """Return joints with axes of their own, and those whose halves contradict each other unsaid.
+
+    A half without enough movement about each axis contradicts nothing: those stand apart, as
+    untested.
+    """
+    given, bad, untested = [], [], []
     for name, rows in sources.items():
         for row in rows:
             if row["source"] == "movement":
                 given.append(f"{name} {row['joint']}")
-                if (
-                    row["halves_deg"]
-                    and max(row["halves_deg"]) > CONTRADICTION
-                    and not row["doubts"]
-                ):
-                    bad.append(f"{name} {row['joint']} ({max(row['halves_deg']):.0f}°)")
-    return {"given": given, "contradicted": bad}
+                if not (row["enough"] and row["halves_deg"]):
+                    untested.append(given[-1])
+                elif max(row["halves_deg"]) > CONTRADICTION and not row["doubts"]:
+                    bad.append(f"{given[-1]} ({max(row['halves_deg']):.0f}°)")
+    return {"given": given, "contradicted": bad, "untested": untested}
 
 
 def bars(sources: Mapping[str, Sequence[Mapping[str, Any]]]) -> list[Bar]:
@@ -156,9 +165,10 @@ the normalized frame of its own thigh and its own trial, so this holds the diffe
 person's legs as well as that of two normalizations: no pose tells which twist of a thigh is
 neutral.
 
-In all recordings together {given} joints got axes from their movement. The two halves
-contradict {bad} of them by more than 10° although nothing was said{which}. All other joints have
-axes of the body frame, with the reason among the warnings.
+In all recordings together {given} joints got axes from their movement. The two halves contradict
+each other by more than 10° at {bad} of them although nothing was said{which}; at {untested} one
+half moves too little to tell. All other joints have axes of the body frame, with the reason among
+the warnings.
 """
 
 
@@ -187,6 +197,7 @@ def page(sources: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
             mirror=number(mirror_difference(rows)),
             given=len(both["given"]),
             bad=len(bad),
+            untested=len(both["untested"]),
             which=" (" + ", ".join(bad) + ")" if bad else "",
         )
     )
@@ -194,7 +205,7 @@ def page(sources: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
 
 
 def _shown_mm(value: float | None) -> str:
-    return number(0.0 if value is not None and value < 1e-6 else value)
+    return number(0.0 if value is not None and value < 5e-4 else value)
 
 
 def _spoken(row: Mapping[str, Any]) -> str:

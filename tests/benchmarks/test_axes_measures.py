@@ -116,6 +116,13 @@ def test_bars(value, at_least, met):
     assert bar.verdict == ("met" if met else "**missed**")
 
 
+def test_figures_carry_their_unit():
+    assert Bar("part", "figure", 2e-15, "rad", 1e-9).measured == "2e-15 rad"
+    assert Bar("part", "figure", 4.0, "", 0).measured == "4"
+    assert Bar("part", "figure", 1.234, "mm", 2).measured == "1.23 mm"
+    assert Bar("part", "figure", 0.9, "", 0.95, at_least=True).asked == "≥ 0.95"
+
+
 def test_nothing_measured_meets_nothing():
     bar = Bar("part", "figure", float("nan"), "deg", 1.0)
     assert not bar.met
@@ -126,7 +133,8 @@ def test_nothing_measured_meets_nothing():
     ("value", "text"),
     [
         (0.0, "0"),
-        (1e-9, "1e-09"),
+        (2e-9, "2e-09"),
+        (3e-14, "0"),
         (0.0123, "0.012"),
         (0.955, "0.955"),
         (3.14159, "3.14"),

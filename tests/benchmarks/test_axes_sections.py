@@ -96,6 +96,7 @@ def row(joint, **more):
         "doubts": [],
         "axes": [[0.0, 0.0, -1.0]],
         "halves_deg": [1.0],
+        "enough": True,
         "held_out_mm": 2.0,
         "own_mm": 1.0,
     }
@@ -109,11 +110,13 @@ def test_contradictions_are_those_that_nobody_told():
             row("neck", halves_deg=[3.0, 40.0], doubts=["halves differ"]),
             row("lumbar", halves_deg=[50.0], source="body"),
             row("left_hip", halves_deg=None),
+            row("right_hip", halves_deg=[70.0], enough=False),
         ],
     }
     found = contradictions(sources)
     assert found["contradicted"] == ["a neck (40°)"]
-    assert len(found["given"]) == 4
+    assert len(found["given"]) == 5
+    assert found["untested"] == ["b left_hip", "b right_hip"]
 
 
 def test_each_functional_trial_tells_of_its_own_joint():
