@@ -28,6 +28,14 @@ def test_joint_to_joint_counts_before_markers(rng):
     assert_allclose(found, (end - begin) / np.linalg.norm(end - begin), atol=EXACT)
 
 
+def test_joints_in_one_place_have_no_direction_but_rounding():
+    begin = np.array([0.1, 0.2, 0.3])
+    for apart, known in ((1e-5, True), (1e-7, False)):
+        end = begin + np.array([0.0, -apart, 0.0])
+        found = main_direction(limb(NONE), begin, end[None], foot=False)
+        assert np.isfinite(found).all() == known
+
+
 def test_several_joints_give_their_principal_direction(rng):
     along = np.array([0.6, 0.0, 0.8])
     carried = np.outer([1.0, 2.0, 3.0], along) + 0.01 * rng.normal(size=(3, 3))

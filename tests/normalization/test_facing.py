@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Skeleton
 from kinesphere.errors import AmbiguousFacing, DegenerateMotion
@@ -118,6 +119,14 @@ def test_who_is_overruled_is_said(facing, contradicts, doll, tools):
     assert any("contradicts the body (feet" in w for w in warnings) == contradicts
 
 
+@pytest.mark.parametrize(("turned_out_deg", "contradicts"), [(60.0, True), (80.0, False)])
+def test_feet_turned_far_out_say_little(turned_out_deg, contradicts, doll, tools):
+    ahead, aside = np.cos(np.deg2rad(turned_out_deg)), np.sin(np.deg2rad(turned_out_deg))
+    feet = {"left_foot": (ahead, 0.0, -aside), "right_foot": (ahead, 0.0, aside)}
+    result = normalize(tools.renamed(doll(stance=tools.stance | feet).motion), facing="-x")
+    assert any("contradicts" in w for w in result.history[-1].warnings) == contradicts
+
+
 def test_level_hands_are_no_feet(doll, tools):
     back = {f"{side}_hand": (-1.0, -0.1, 0.0) for side in ("left", "right")}
     result = normalize(tools.renamed(doll(stance=tools.stance | back).motion))
@@ -179,9 +188,11 @@ def test_lateral_frames_hold_the_lateral_axis_and_lean_on_the_vertical(rng):
     assert_allclose(np.linalg.det(frames[good]), 1.0)
 
 
-def test_the_plane_gives_the_papers_axes(rng):
+@pytest.mark.parametrize("lean_deg", [0.0, 45.0])
+def test_the_plane_gives_the_papers_axes(lean_deg, rng):
     """Normal of the best plane, up projected into it, and the third across both."""
-    joints = rng.normal(size=(1, 9, 3)) * [0.05, 0.6, 0.2]
+    lean = Rotation.from_euler("z", lean_deg, degrees=True).as_matrix()
+    joints = rng.normal(size=(1, 9, 3)) * [0.05, 0.6, 0.2] @ lean.T
     up = np.array([[0.0, 1.0, 0.0]])
     frame = plane_frames(joints, up, np.full((1, 3), np.nan))[0]
     normal = np.linalg.svd(joints[0] - joints[0].mean(axis=0))[2][2]
