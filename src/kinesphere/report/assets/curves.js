@@ -210,6 +210,10 @@ class Chart {
     this.paintCurve(context, array, this.index, y, Infinity);
     context.fillStyle = theme.dim;
     context.textAlign = "left";
-    context.fillText(`residual, to ${high.toFixed(0)} mm`, this.margin.left + 4, top + 8);
+    const scale = [`residual, to ${high.toFixed(0)} mm`, this.margin.left + 4, top + 8];
+    context.strokeStyle = theme.card;
+    context.lineWidth = 3;
+    context.strokeText(...scale);
+    context.fillText(...scale);
   }
 }
