@@ -23,12 +23,13 @@ from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.confidence import (
     PERCENTILES,
     AxesQuality,
+    Finder,
     assess_axes,
     observed_n_axes,
     reasons_to_doubt,
 )
 from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge
-from kinesphere.parameterization.main_movements import main_movements
+from kinesphere.parameterization.main_movements import long_phases, main_movements
 from kinesphere.parameterization.rest import paper_rest, rest_target, robust_rest
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import (
@@ -163,23 +164,35 @@ def _movement_axes(
     if len(axes) == 0:
         unseen = not view.calibration.any()
         return axes, None, ["it is never seen" if unseen else "the limb hardly moves"]
+    quality, doubts = _judged(view, samples, axes, n_axes, find, options)
+    long = long_phases(samples)
+    if doubts and not free and 0 < len(long) < len(samples.phases):
+        calmer = samples.with_phases(long)
+        again = find(calmer)
+        if len(again) == n_axes:
+            second = _judged(view, calmer, again, n_axes, find, options)
+            if not second[1]:
+                return again, *second
+    return axes, quality, doubts
+
+
+def _judged(
+    view: JointView,
+    samples: JointSamples,
+    axes: Array,
+    n_axes: int,
+    find: Finder,
+    options: AxesSettings,
+) -> tuple[AxesQuality, list[str]]:
+    """Return how good axes from some phases are, and what speaks against them."""
     quality = assess_axes(samples, axes, find)
-    if free and len(axes) == n_axes:
+    if len(axes) < n_axes:
+        return quality, [f"only {len(axes)} of {n_axes} main movements is there"]
+    if options.method == "universal-joint" and n_axes == 2:
         quality = replace(quality, ranges=_free_ranges(view, axes))
         options = replace(options, smallest_explained=0.0)
-    if len(axes) < n_axes:
-        return axes, quality, [f"only {len(axes)} of {n_axes} main movements is there"]
-    return (
-        axes,
-        quality,
-        reasons_to_doubt(
-            quality,
-            axes,
-            nominal_axes(view.name, axes) if view.human else None,
-            view.samples.positions,
-            options,
-        ),
-    )
+    nominal = nominal_axes(view.name, axes) if view.human else None
+    return quality, reasons_to_doubt(quality, axes, nominal, view.samples.positions, options)
 
 
 def _free_hinge(view: JointView, options: AxesSettings) -> FreeHinge | None:

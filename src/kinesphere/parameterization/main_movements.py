@@ -13,6 +13,7 @@ from kinesphere.parameterization.settings import AxesSettings
 PERCENTILES = (5.0, 95.0)  # a range of motion leaves the extremes out
 STEP = 0.1  # s, over which the direction of a turn is taken
 SHORTEST = 0.8  # s, of a piece that a phase is cut into
+LONG = 2.0  # s, of one axis at a time: a repeated stroke, hardly ever an accident
 MOST_TRIALS = 300  # places where a cut is tried
 
 
@@ -36,9 +37,18 @@ def main_movements(samples: JointSamples, s: AxesSettings) -> Iterator[tuple[Pha
             if all(_purity(samples, half) >= purer for half in both):
                 very_pure += both
     nearly_pure = [phase for phase, purity in purities.items() if purity >= s.purest]
-    for pure in (very_pure, nearly_pure):
-        yield tuple(phase for phase in pure if _extent(samples, phase) >= far)
+    very_pure, nearly_pure = (
+        [phase for phase in pure if _extent(samples, phase) >= far]
+        for pure in (very_pure, nearly_pure)
+    )
+    yield tuple(very_pure)
+    yield tuple(nearly_pure)
     yield samples.phases
+
+
+def long_phases(samples: JointSamples) -> tuple[Phase, ...]:
+    """Return the phases that are hardly pure by accident, as some of minutes of free motion are."""
+    return tuple((a, b) for a, b in samples.phases if b - a >= LONG * samples.rate)
 
 
 def best_cut(samples: JointSamples, phase: Phase) -> int | None:

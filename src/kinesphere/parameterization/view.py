@@ -41,8 +41,9 @@ class JointView:
 def reliable_frames(flags: Codes, window: Mask) -> Mask:
     """Return the frames of a window whose poses are good enough to find axes from, (n_frames,).
 
-    What markers or joint centres fixed, if that is a fair share of what is seen; else what borrowed
-    its twist or has none, too; at last what was filled, for a doubtful axis beats none.
+    Each limb counts where its pose came about as well as it usually does: a limb of three markers
+    leans on a joint only while one of them is hidden, a sparse one always. Where this leaves too
+    little, worse poses count too, what was filled at last; a doubtful axis beats none.
 
     Parameters
     ----------
@@ -50,13 +51,17 @@ def reliable_frames(flags: Codes, window: Mask) -> Mask:
         PoseFlag of parent and child.
     window : (n_frames,)
     """
-    seen = window & (flags != PoseFlag.UNSEEN).all(axis=1)
-    worst = flags.max(axis=1)  # the flags are in the order of trust
-    for limit in (PoseFlag.JOINT_AIDED, PoseFlag.TWIST_BORROWED, PoseFlag.TWIST_UNKNOWN):
-        chosen = seen & (worst <= limit)
-        if chosen.sum() >= FAIR_SHARE * seen.sum():
+    seen = np.asarray(window & (flags != PoseFlag.UNSEEN).all(axis=1))
+    enough = FAIR_SHARE * seen.sum()
+    levels = [  # the flags are in the order of trust
+        next(level for level in PoseFlag if (limb <= level).sum() >= enough)
+        for limb in flags[seen].T
+    ]
+    for least in PoseFlag:
+        chosen = seen & (flags <= np.maximum(levels, least)).all(axis=1)
+        if chosen.sum() >= enough:
             return np.asarray(chosen)
-    return np.asarray(seen)
+    return seen
 
 
 def view_joint(

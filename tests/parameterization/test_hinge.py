@@ -1,0 +1,113 @@
+"""Joints of one axis: exact without noise, in main movements and in free motion."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from kinesphere.geometry.rotations import rotation_about
+from kinesphere.parameterization.axes.hinge import hinge_axis
+from kinesphere.parameterization.axes.phase_log_pca import phase_log_pca
+from kinesphere.parameterization.free_hinge import free_hinge
+from kinesphere.parameterization.samples import JointSamples
+from kinesphere.parameterization.settings import AxesSettings
+
+RATE = 50.0
+EXACT = 1e-3  # deg, what Gauss-Newton steps leave
+LONG_AXIS = np.array([0.0, -1.0, 0.0])
+
+
+def degrees(a, b):
+    """Return the angle between two lines in deg."""
+    return np.rad2deg(np.arctan2(np.linalg.norm(np.cross(a, b)), abs(a @ b)))
+
+
+def waves(rng, n, low, high, slowest=0.1, fastest=0.5):
+    """Return smooth angles between two in rad, (n,), from angles in deg."""
+    t = np.arange(n) / RATE
+    course = sum(
+        np.sin(2 * np.pi * rng.uniform(slowest, fastest) * t + rng.uniform(0, 2 * np.pi))
+        for _ in range(3)
+    )
+    return np.deg2rad(low + (high - low) * (0.5 + course / 6))
+
+
+def hinge(rng, *, cone=85.0, n=1500, bends=(0, 110), twists=(-40, 40), noise=0.0, phases=None):
+    """Return a limb that bends about one axis and twists about itself all the while."""
+    axis = rotation_about(LONG_AXIS, np.array(rng.uniform(0, 2 * np.pi))) @ [1.0, 0.0, 0.0]
+    tilt = Rotation.from_rotvec(np.deg2rad(90 - cone) * np.cross(axis, LONG_AXIS))
+    rest = tilt if (tilt.apply(LONG_AXIS) @ axis) * np.cos(np.deg2rad(cone)) >= 0 else tilt.inv()
+    rotations = (
+        rotation_about(axis, waves(rng, n, *bends))
+        @ rest.as_matrix()
+        @ rotation_about(LONG_AXIS, waves(rng, n, *twists))
+    )
+    rotations = Rotation.from_rotvec(np.deg2rad(noise) * rng.normal(size=(n, 3))).as_matrix() @ (
+        rotations
+    )
+    phases = phases or ((0, n),)
+    return JointSamples(rotations, rotations @ LONG_AXIS, phases, RATE, LONG_AXIS), axis
+
+
+@pytest.mark.parametrize("cone", [65.0, 90.0, 110.0])
+def test_twist_cannot_touch_the_axis_of_a_hinge(rng, cone):
+    samples, axis = hinge(rng, cone=cone)
+    assert degrees(hinge_axis(samples, LONG_AXIS[None])[0], axis) < EXACT
+    by_orientation = phase_log_pca(samples, 1, AxesSettings())[0]
+    assert degrees(by_orientation, axis) > 1.0  # what twist does to the start
+
+
+def test_without_twist_orientations_make_a_small_movement_tell_its_axis(rng):
+    # an arc of 20 deg has a sagitta of 1.5 deg: directions alone are at a loss under 1 deg of noise
+    errors = []
+    for _ in range(5):
+        samples, axis = hinge(rng, bends=(0, 20), twists=(0, 0), noise=1.0)
+        errors.append(degrees(hinge_axis(samples, axis[None])[0], axis))
+    assert np.median(errors) < 1.0
+
+
+def test_bad_frames_count_little(rng):
+    samples, axis = hinge(rng, noise=0.5)
+    spoiled = samples.rotations.copy()
+    bad = slice(300, 360)
+    spoiled[bad] = Rotation.from_euler("x", 40, degrees=True).as_matrix() @ spoiled[bad]
+    worse = JointSamples(spoiled, spoiled @ LONG_AXIS, samples.phases, RATE, LONG_AXIS)
+    assert degrees(hinge_axis(worse, LONG_AXIS[None])[0], axis) < 0.5
+
+
+def test_phases_share_one_cone(rng):
+    # short arcs here and there: each alone hardly has a curvature
+    arcs = tuple((k, k + 40) for k in range(0, 1500, 150))
+    samples, axis = hinge(rng, noise=0.3, phases=arcs)
+    assert degrees(hinge_axis(samples, LONG_AXIS[None])[0], axis) < 1.0
+
+
+def test_free_motion_tells_the_axis_of_a_hinge(rng):
+    samples, axis = hinge(rng, noise=1.0)
+    off = Rotation.from_rotvec(np.deg2rad(25.0) * LONG_AXIS).apply(axis)
+    found = free_hinge(samples, off)
+    assert found.clearly_better
+    error = degrees(found.axis, axis)
+    assert error < 1.0
+    assert error < 4 * np.rad2deg(found.uncertainty)
+    assert np.rad2deg(found.moved) > 40.0
+
+
+def test_what_is_no_better_than_the_body_axis_is_said_so(rng):
+    samples, axis = hinge(rng, noise=2.0)
+    assert not free_hinge(samples, axis).clearly_better  # it is the body's that is right
+
+
+def test_little_movement_tells_no_free_hinge(rng):
+    samples, axis = hinge(rng, n=150)
+    assert free_hinge(samples, axis) is None
+
+
+def test_the_jackknife_knows_how_uncertain_an_axis_is(rng):
+    errors, deviations = [], []
+    for _ in range(12):
+        samples, axis = hinge(rng, n=600, noise=2.0)
+        found = free_hinge(samples, axis)
+        errors.append(degrees(found.axis, axis))
+        deviations.append(np.rad2deg(found.uncertainty))
+    ratio = np.sqrt(np.mean(np.square(errors)) / np.mean(np.square(deviations)))
+    assert 0.3 < ratio < 2.0  # of an error and its own estimate, four folds each

@@ -1,0 +1,69 @@
+"""Which frames axes are taken from, and how they are laid one after another."""
+
+import numpy as np
+from numpy.testing import assert_allclose, assert_array_equal
+
+from kinesphere.data import PoseFlag
+from kinesphere.parameterization import ParameterizationSettings
+from kinesphere.parameterization.view import reliable_frames, view_joint
+
+SMOOTHED = 0.05  # what 4 Hz do to a limb's direction at the ends of short runs
+
+
+def flags(*limbs):
+    return np.array(limbs, dtype=np.uint8).T
+
+
+def test_what_was_filled_or_borrowed_is_left_out():
+    own, aided = [PoseFlag.MEASURED] * 8, [PoseFlag.JOINT_AIDED] * 8
+    for bad in (PoseFlag.UNSEEN, PoseFlag.TWIST_BORROWED, PoseFlag.TWIST_UNKNOWN, PoseFlag.FILLED):
+        parent, child = list(own), list(aided)
+        parent[2] = child[5] = bad
+        chosen = reliable_frames(flags(parent, child), np.ones(8, dtype=bool))
+        assert_array_equal(np.flatnonzero(~chosen), [2, 5])
+
+
+def test_a_limb_of_many_markers_is_left_out_where_it_leans_on_a_joint():
+    child = [PoseFlag.MEASURED] * 6 + [PoseFlag.JOINT_AIDED] * 2
+    chosen = reliable_frames(flags([PoseFlag.JOINT_AIDED] * 8, child), np.ones(8, dtype=bool))
+    assert_array_equal(chosen, [True] * 6 + [False] * 2)
+
+
+def test_a_doubtful_axis_beats_none():
+    unknown = [PoseFlag.TWIST_UNKNOWN] * 7 + [PoseFlag.FILLED]
+    chosen = reliable_frames(flags([PoseFlag.MEASURED] * 8, unknown), np.ones(8, dtype=bool))
+    assert_array_equal(chosen, [True] * 7 + [False])
+    filled = [PoseFlag.FILLED] * 8
+    assert reliable_frames(flags(filled, filled), np.ones(8, dtype=bool)).all()
+
+
+def test_limbs_that_are_good_in_turns_have_frames_in_common_all_the_same():
+    parent = [PoseFlag.MEASURED] * 4 + [PoseFlag.FILLED] * 4
+    chosen = reliable_frames(flags(parent, parent[::-1]), np.ones(8, dtype=bool))
+    assert chosen.all()
+
+
+def test_the_window_bounds_them():
+    window = np.arange(8) >= 3
+    chosen = reliable_frames(flags([PoseFlag.MEASURED] * 8, [PoseFlag.MEASURED] * 8), window)
+    assert_array_equal(chosen, window)
+
+
+def test_bad_frames_are_not_smoothed_into_good_ones(rng, calibration):
+    joint = calibration(rng)
+    good = np.ones(len(joint.rotations), dtype=bool)
+    good[rng.integers(0, len(good), 40)[:, None] + np.arange(5)] = False
+    spoiled = joint.rotations.copy()
+    spoiled[~good] = np.eye(3)
+    everywhere = np.ones(len(good), dtype=bool)
+    settings = ParameterizationSettings()
+    view = view_joint("joint_01", spoiled, joint.long_axis, everywhere, joint.rate, good, settings)
+    assert_array_equal(view.samples.frames, np.flatnonzero(good))
+    truth = joint.rotations[good] @ joint.long_axis
+    assert_allclose(view.samples.positions, truth, atol=SMOOTHED)
+    start, stop = view.samples.phases[0]
+    frames = view.samples.frames
+    assert view.samples.phase_times[0] == (
+        frames[start] / joint.rate,
+        (frames[stop - 1] + 1) / joint.rate,
+    )
