@@ -227,6 +227,7 @@ def test_a_short_model_by_hand_is_enough(tmp_path):
         (lambda c: c["joints"][0]["landmarks"][1].update(forward=0.1), "forward need scale"),
         (lambda c: c.update(segments=[]), "segments"),
         (lambda c: c.update(name=""), "name"),
+        (lambda c: c["joints"][0].update(n_axes="x" * 999), r"n_axes must be .{,40}'x{59}$"),
         (lambda c: c.update(name=7, root=8), r"name must be text, found 7 \(and 1 more\)"),
     ],
 )

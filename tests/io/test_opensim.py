@@ -208,6 +208,15 @@ def test_no_joint_of_the_model_turns_twice_about_one_axis(odd_parameters):
     assert sizes[7] == 2
 
 
+@pytest.mark.parametrize(("apart_deg", "n_joints"), [(2.5, 2), (3.5, 1)])
+def test_axes_within_three_degrees_do_not_share_a_joint(performance, apart_deg, n_joints):
+    skeleton = performance.skeleton
+    j = skeleton.joint_names.index("left_hip")
+    axes = Rotation.from_euler("y", [[0.0], [apart_deg]], degrees=True).apply([0.0, 0.0, 1.0])
+    joints = [replace(joint, axes=axes, axes_uncertainty=None) for joint in skeleton.joints]
+    assert len(joint_turns(replace(skeleton, joints=tuple(joints)), j)) == n_joints
+
+
 def test_names_opensim_refuses_are_changed_alike_everywhere(performance, tmp_path):
     limbs = list(performance.skeleton.limbs)
     limbs[0] = replace(limbs[0], markers=("C 7", "a/b", *limbs[0].markers[2:]))

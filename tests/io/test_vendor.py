@@ -37,6 +37,8 @@ def test_four_markers_of_such_names_stay_markers(rng):
     assert kinds(labels, plate @ turns) == (None,) * 4
     assert kinds(labels, cross(rng, np.array([[[0.1], [0.1], [0.11]]]))) == (None,) * 4
     assert kinds(labels, np.zeros((FRAMES, 4, 3))) == (None,) * 4
+    skew = np.array([[0, 0, 0], [0.1, 0, 0], [0.03, 0.0954, 0], [0, 0, 0.1]])  # 72.5° apart
+    assert kinds(labels, skew @ turns) == (None,) * 4
 
 
 def test_where_nothing_was_seen_the_names_decide():

@@ -1,8 +1,11 @@
 """Which frames count as the default position, by either cost."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
 
 from kinesphere.normalization.default_position import joint_speeds, paper_cost, posture_cost
 from kinesphere.normalization.samples import take_samples
@@ -205,3 +208,12 @@ def test_a_lying_body_is_measured_against_itself(doll):
     assert b["trunk_tilt_deg"] == pytest.approx(90)
     for name in ("arm_angle_deg", "thigh_angle_deg", "knee_flexion_deg"):
         assert_allclose(b[name], a[name], atol=1e-6)
+
+
+@pytest.mark.parametrize(("tilt_deg", "lies"), [(30.0, False), (60.0, True), (170.0, True)])
+def test_who_lies_or_stands_on_the_head_has_a_vertical_of_their_own(doll, tilt_deg, lies):
+    motion = doll(n_frames=5).motion
+    turn = Rotation.from_euler("z", tilt_deg, degrees=True).as_matrix()
+    tilted = replace(motion, rotations=turn @ motion.rotations, origins=motion.origins @ turn.T)
+    vertical = take_samples(tilted, RATE, 0.2).vertical
+    assert_allclose(vertical, np.tile(turn[:, 1] if lies else UP, (len(vertical), 1)), atol=1e-9)

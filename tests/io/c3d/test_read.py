@@ -209,10 +209,10 @@ def test_samples_that_are_no_numbers_are_missing(c3d_file):
 def test_events_run_on_the_clock_of_the_recording(c3d_file):
     events = {
         "USED": [2],
-        "LABELS": ["Foot Strike", "Foot Off"],
-        "CONTEXTS": ["Left", "Right"],
-        "SUBJECTS": ["Ann", ""],
-        "TIMES": [0.0, 3.5, 1.0, 2.25],
+        "LABELS": ["Foot Strike", "Foot Off", "of an older trial"],
+        "CONTEXTS": ["Left", "Right", ""],
+        "SUBJECTS": ["Ann", "", ""],
+        "TIMES": [0.0, 3.5, 1.0, 2.25, 0.0, 3.0],
     }
     recording = read_c3d(c3d_file(first=201, events=[(9.0, "OLD")], groups={"EVENT": events}))
     assert recording.events == (
