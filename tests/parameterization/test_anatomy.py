@@ -1,5 +1,7 @@
 """What the names of joints say about number, order, sign and side of axes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -11,6 +13,7 @@ from kinesphere.parameterization.anatomy import (
     MIRROR,
     body_axes,
     declared_n_axes,
+    human_plan,
     named_axes,
     nominal_axes,
     substitute_axes,
@@ -20,7 +23,11 @@ from kinesphere.parameterization.settings import (
     FilterSettings,
     ParameterizationSettings,
     parse_counts,
+    parse_windows,
 )
+from kinesphere.synthetic.actor import make_actor
+from kinesphere.synthetic.bodies import HUMAN
+from kinesphere.synthetic.creatures import QUADRUPED
 
 DOWN, UP, FORWARD = -np.eye(3)[1], np.eye(3)[1], np.eye(3)[0]
 
@@ -109,3 +116,30 @@ def test_wrong_settings_say_what_would_be_right():
         AxesSettings(method="magic")
     with pytest.raises(BadSetting, match="slowest is 70"):
         FilterSettings(slowest=70.0)
+
+
+def test_windows_are_seconds_of_a_joint():
+    found = parse_windows("left_hip=0:12, knee = 12:24.5")
+    assert found == {"left_hip": (0.0, 12.0), "knee": (12.0, 24.5)}
+    assert parse_windows("") == {}
+
+
+@pytest.mark.parametrize(
+    "wrong", ["left_hip", "=0:3", "hip=3", "hip=5:2", "hip=-1:2", "hip=a:b", "hip=0:inf"]
+)
+def test_a_window_that_is_none_is_named(wrong):
+    with pytest.raises(BadSetting, match="write JOINT=START:END"):
+        AxesSettings(windows=wrong)
+
+
+def test_only_a_body_like_a_person_has_human_anatomy(rng):
+    person, dog = (make_actor(rng, plan=plan).skeleton for plan in (HUMAN, QUADRUPED))
+    assert human_plan(person)
+    assert not human_plan(dog)
+    limbs = tuple(
+        replace(limb, length=3 * limb.length) if limb.name == "left_forearm" else limb
+        for limb in person.limbs
+    )
+    assert not human_plan(replace(person, limbs=limbs))
+    unknown = tuple(replace(limb, length=np.nan) for limb in person.limbs)
+    assert human_plan(replace(person, limbs=unknown))

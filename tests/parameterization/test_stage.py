@@ -117,6 +117,45 @@ def test_a_window_holds_what_axes_come_from(performance):
         parameterize(performance.motion, calibration=(100.0, 120.0))
 
 
+def test_every_joint_may_have_a_window_of_its_own(performance, solved):
+    knee = findings(solved, "left_knee")["phases_s"]
+    span = knee[0][0] - 1, knee[-1][1] + 1
+    settings = ParameterizationSettings(
+        axes=AxesSettings(windows=f"left_knee={span[0]}:{span[1]}, shoulder=0:1")
+    )
+    windowed = parameterize(performance.motion, settings)
+    phases = findings(windowed, "left_knee")["phases_s"]
+    assert span[0] <= phases[0][0] < phases[-1][1] <= span[1] + 0.1
+    true = performance.skeleton.joint("left_knee")
+    assert axis_errors(windowed.skeleton.joint("left_knee"), true).max() < AXIS
+    sources = {j.name: j.axes_source for j in windowed.skeleton.joints}
+    assert sources["left_shoulder"] == sources["right_shoulder"] == "body"  # it stands, there
+    assert sources["left_hip"] == "movement"  # as before
+
+
+def test_a_window_of_a_joint_that_is_not_there_is_refused(performance):
+    with pytest.raises(BadSetting, match="names tail; the joints are"):
+        parameterize(
+            performance.motion, ParameterizationSettings(axes=AxesSettings(windows="tail=0:9"))
+        )
+
+
+def test_frames_that_were_filled_wrongly_tell_no_axis(performance, rng):
+    motion = performance.motion
+    rotations, flags = np.array(motion.rotations), np.array(motion.flags)
+    child = motion.skeleton.limb_names.index("left_shank")
+    bad = rng.integers(0, motion.n_frames, 12)[:, None] + np.arange(8)
+    bad = np.unique(np.minimum(bad, motion.n_frames - 1))
+    rotations[bad, child] = rotations[bad, child] @ rotation_about(
+        np.array([0.0, 0.6, 0.8]), np.array(0.9)
+    )
+    flags[bad, child] = PoseFlag.FILLED
+    spoiled = parameterize(replace(motion, rotations=rotations, flags=flags))
+    for name in ("left_knee", "left_ankle"):
+        true = performance.skeleton.joint(name)
+        assert axis_errors(spoiled.skeleton.joint(name), true).max() < AXIS
+
+
 def test_free_motion_is_told_and_gets_body_axes(performance):
     start = performance.calibration[1]
     solved = parameterize(performance.motion, calibration=(start, start + 100))

@@ -67,9 +67,14 @@ def human_plan(skeleton: Skeleton) -> bool:
     return True
 
 
+def without_side(name: str) -> str:
+    """Return ``hip`` for ``left_hip``; other names as they are."""
+    return name.removeprefix("left_").removeprefix("right_")
+
+
 def joint_kind(name: str) -> str | None:
     """Return ``knee`` for ``left_knee``; None for a joint nobody named."""
-    kind = name.removeprefix("left_").removeprefix("right_")
+    kind = without_side(name)
     return kind if kind in BODY_AXES else None
 
 

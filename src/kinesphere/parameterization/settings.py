@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field, fields
 
+import numpy as np
+
 from kinesphere.data import Json, check_settings, setting, settings_as_json
 from kinesphere.errors import BadSetting
 
@@ -90,6 +92,11 @@ class AxesSettings:
         "number of axes by joint, e.g. 'left_wrist=1, hip=2'; a name without side means both; "
         "others by the joint's name, or by the data where it has none",
     )
+    windows: str = setting(
+        "",
+        "where in time a joint does its main movements, in s, e.g. 'left_hip=0:12, knee=12:24'; "
+        "a name without side means both; others take the whole calibration",
+    )
     refine: bool = setting(
         True,
         "make the axes of 'phase-log-pca' and 'sara' robust to twist",
@@ -169,6 +176,7 @@ class AxesSettings:
     def __post_init__(self) -> None:
         check_settings(self)
         parse_counts(self.counts)
+        parse_windows(self.windows)
 
 
 @dataclass(frozen=True)
@@ -252,6 +260,29 @@ class ParameterizationSettings:
             for group in fields(self)
             for key, value in settings_as_json(getattr(self, group.name)).items()
         }
+
+
+def parse_windows(text: str) -> dict[str, tuple[float, float]]:
+    """Return joint → (start, end) in s from ``"left_hip=0:12, knee=12:24"``.
+
+    Raises
+    ------
+    BadSetting
+        If an entry is no ``JOINT=START:END`` with 0 <= START < END.
+    """
+    windows: dict[str, tuple[float, float]] = {}
+    for entry in filter(None, (part.strip() for part in text.split(","))):
+        name, _, span = (part.strip() for part in entry.partition("="))
+        try:
+            start, end = (float(part) for part in span.split(":"))
+        except ValueError:
+            start, end = np.nan, np.nan
+        if not name or not 0 <= start < end < np.inf:
+            raise BadSetting(
+                f"windows holds {entry!r}; write JOINT=START:END in seconds, as in left_hip=0:12"
+            )
+        windows[name] = (start, end)
+    return windows
 
 
 def parse_counts(text: str) -> dict[str, int]:

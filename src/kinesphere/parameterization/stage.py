@@ -19,7 +19,7 @@ from kinesphere.data import (
 )
 from kinesphere.errors import BadSetting
 from kinesphere.geometry.chain import joint_rotations
-from kinesphere.parameterization.anatomy import human_plan
+from kinesphere.parameterization.anatomy import human_plan, without_side
 from kinesphere.parameterization.angles import JointAngles
 from kinesphere.parameterization.joint import (
     JointFit,
@@ -32,7 +32,11 @@ from kinesphere.parameterization.measures import (
     paper_measures,
 )
 from kinesphere.parameterization.report import result_findings, stage_warnings
-from kinesphere.parameterization.settings import ParameterizationSettings
+from kinesphere.parameterization.settings import (
+    AxesSettings,
+    ParameterizationSettings,
+    parse_windows,
+)
 from kinesphere.parameterization.view import JointView, reliable_frames, view_joint
 
 TORN = 0.02  # m, joints closer together than this are never called dislocated
@@ -71,10 +75,10 @@ def parameterize(
     Raises
     ------
     BadSetting
-        If the calibration window holds no frame.
+        If a calibration window holds no frame, or is given for a joint that is not there.
     """
     settings = settings or ParameterizationSettings()
-    window = _window(motion, calibration)
+    windows = _windows(motion, calibration, settings.axes)
     skeleton = motion.skeleton
     n, n_joints = motion.n_frames, len(skeleton.joints)
     angles = np.full((n, n_joints, 3), np.nan)
@@ -97,7 +101,7 @@ def parameterize(
             limb.long_axis,
             twist_known,
             motion.rate,
-            reliable_frames(motion.flags[:, [parent, j + 1]], window),
+            reliable_frames(motion.flags[:, [parent, j + 1]], windows[j]),
             settings,
             human,
         )
@@ -161,8 +165,20 @@ def parameterize(
     )
 
 
+def _windows(
+    motion: Motion, calibration: tuple[float, float] | None, axes: AxesSettings
+) -> list[Mask]:
+    """Return which frames each joint's axes and rest come from, masks (n_frames,)."""
+    own = parse_windows(axes.windows)
+    joints = motion.skeleton.joint_names
+    kinds = {name: without_side(name) for name in joints}
+    if strange := [name for name in own if name not in {*joints, *kinds.values()}]:
+        raise BadSetting(f"windows names {', '.join(strange)}; the joints are {', '.join(joints)}")
+    return [_window(motion, own.get(name, own.get(kinds[name], calibration))) for name in joints]
+
+
 def _window(motion: Motion, calibration: tuple[float, float] | None) -> Mask:
-    """Return which frames lie in the calibration window, (n_frames,)."""
+    """Return which frames lie in a calibration window, (n_frames,)."""
     if calibration is None:
         return np.ones(motion.n_frames, dtype=bool)
     start, end = calibration
