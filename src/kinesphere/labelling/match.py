@@ -3,9 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
-from kinesphere.data import Json, Recording, Step, TopologicalModel
+from kinesphere.data import Array, Json, Recording, Step, TopologicalModel
 from kinesphere.errors import BadRecording
 from kinesphere.labelling.choice import (
     COVERED,
@@ -58,7 +56,7 @@ def match_labels(
     step = _step(recording, model, subject, chosen, columns, names, tuple(others))
     return replace(
         recording,
-        markers=recording.markers[:, kept],
+        markers=recording.markers[:, kept] if dropped else recording.markers,
         labels=tuple(labels[column] for column in kept),
         residuals=None if recording.residuals is None else recording.residuals[:, kept],
         history=(*recording.history, step),
@@ -85,6 +83,12 @@ def _new_labels(
     return {**old, **new}
 
 
+def _ever_seen(marker: Array) -> bool:
+    """Return whether a marker has a position in any frame, (n_frames, 3); most do in the first."""
+    first = bool(np.isfinite(marker[:1]).all(axis=1).any())
+    return first or bool(np.isfinite(marker).all(axis=1).any())
+
+
 def _step(
     recording: Recording,
     model: TopologicalModel,
@@ -107,9 +111,7 @@ def _step(
         if n.column == column and n.bare != label
     }
     unseen: list[Json] = [
-        label
-        for label, column in columns.items()
-        if np.isnan(recording.markers[:, column]).any(axis=1).all()
+        label for label, column in columns.items() if not recording.seen[:, column].any()
     ]
     found = len(required) - len(missing)
     warnings = []

@@ -248,8 +248,9 @@ def test_where_header_and_parameters_disagree_one_is_taken_aloud(c3d_file):
     assert "POINT:USED of 3, which is taken" in warnings_of(recording)
 
 
-def test_the_frame_rate_of_the_header_stands_in(c3d_file):
-    recording = read_c3d(c3d_file(groups={"POINT": {"RATE": [0.0]}}))
+@pytest.mark.parametrize("said", [0.0, -50.0, 1e9, float("nan")])
+def test_the_frame_rate_of_the_header_stands_in(c3d_file, said):
+    recording = read_c3d(c3d_file(groups={"POINT": {"RATE": [said]}}))
     assert recording.rate == 100.0
     assert "the header's 100 Hz is taken" in warnings_of(recording)
 

@@ -181,6 +181,11 @@ def test_up_is_written_in_the_axes_of_the_file(recording, tmp_path):
     assert rewritten(replace(recording, world_from_file=matrix), tmp_path).up == "+z"
 
 
+def test_an_up_that_is_no_axis_of_the_file_is_not_said(recording, tmp_path):
+    slant = Rotation.from_euler("x", 30, degrees=True).as_matrix()
+    assert rewritten(replace(recording, world_from_file=slant), tmp_path).up is None
+
+
 def test_new_labels_keep_the_place_and_the_rest_of_their_point(rich, tmp_path):
     before = read_c3d(rich)
     after = rewritten(replace(before, labels=("HEAD", *before.labels[1:])), tmp_path)
