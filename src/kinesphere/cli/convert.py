@@ -28,15 +28,22 @@ def convert(
     """
     from kinesphere.cli.console import print_json, print_warnings, stdout
     from kinesphere.cli.files import check_target
-    from kinesphere.data import Solution
+    from kinesphere.cli.losses import left_behind
+    from kinesphere.cli.options import BadArgument
+    from kinesphere.data import Recording, Solution
     from kinesphere.io import read, write
 
+    if target.exists() and source.exists() and target.samefile(source):
+        raise BadArgument(f"{target} is what is to be converted; name another file for the result")
     check_target(target)
     found = read(source)
     if isinstance(found, Solution):
         found = part_for(found, target)
     write(found, target)
     warnings = [warning for step in getattr(found, "history", ()) for warning in step.warnings]
+    suffix = target.suffix.lower()
+    if isinstance(found, Recording) and (lost := left_behind(found, suffix)):
+        warnings.append(f"{suffix} has no place for {', '.join(lost)}: left behind")
     size = target.stat().st_size if target.is_file() else None
     if as_json:
         print_json({"in": str(source), "out": str(target), "bytes": size, "warnings": warnings})

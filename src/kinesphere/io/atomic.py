@@ -3,12 +3,15 @@
 import errno
 import os
 import shutil
+import stat
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from kinesphere.errors import UnwritableFile
+
+_MAY_WRITE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
 
 @contextmanager
@@ -87,6 +90,9 @@ def check_file_place(path: str | Path) -> None:
     with _said_plainly(path):
         if path.is_dir():
             raise UnwritableFile(f"{path} is a folder; a file cannot take its place")
+        if path.exists() and not path.stat().st_mode & _MAY_WRITE:
+            # replacing asks the folder alone, so a protected recording would be lost in silence
+            raise UnwritableFile(f"{path} is write-protected; name another file")
         _check_may_write(path.parent)
 
 

@@ -40,8 +40,8 @@ def model_for(
 
 
 _REMEDY = (
-    "make a model from labelled recordings with 'kinesphere model FILE -o MODEL.json' and pass "
-    "it with --model MODEL.json"
+    "say which marker sits on which segment: 'kinesphere model FILE --segments SEGMENTS "
+    "-o MODEL.json', then pass --model MODEL.json"
 )
 
 
