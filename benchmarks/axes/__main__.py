@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmarks.axes import angles, estimators, filters, normalization, solved, times
+from benchmarks.axes import angles, estimators, filters, floor, normalization, solved, times
 from benchmarks.axes.page import all_bars, page
 from kinesphere import __version__
 
@@ -88,6 +88,7 @@ def measure(run: Run, data: Path) -> dict[str, Any]:
         "free": estimators.summary_free(
             run("free motion", estimators.run_free, estimators.FREE_TASKS)
         ),
+        "floor": floor.summary(run("floor of free motion", floor.run, floor.TASKS)),
     }
 
 

@@ -200,12 +200,16 @@ the paper's argument against it is an argument against its start.
 """
 _AFTER = """
 The proximal axis is compared in the parent, the distal one in the limb, where each is fixed.
-Estimators that wait for one movement at a time cannot work here; a method that found no axes
-counts as 90° off.
+Estimators that wait for one movement at a time cannot work here; a method that found no axes, or
+fell back to the body's, counts as 90° off. *Least twist from the truth* is a yardstick, not a
+method: two axes and a twist rebuild every pose, so all that speaks for one pair of axes against
+another is that people twist little. The axes that need least twist, searched from the true ones,
+show about how much 20 s can tell. Whoever wants better axes in spite of slow twist needs longer
+motion, or must know more than the poses.
 """
 
 
-def page(table: dict[str, Any], free: dict[str, Any]) -> str:
+def page(table: dict[str, Any], free: dict[str, Any], floor: dict[str, Any]) -> str:
     """Return the section."""
     lines = [_BEFORE.format(seeds=SEEDS)]
     for cone, rows in table.items():
@@ -223,6 +227,8 @@ def page(table: dict[str, Any], free: dict[str, Any]) -> str:
         for method, row in rows.items():
             cells = " | ".join(_shown(r) for r in row.values())
             lines.append(f"| {method}, {twist} | {cells} |")
+        cells = " | ".join(_shown(r) for r in floor[twist].values())
+        lines.append(f"| *least twist from the truth, {twist}* | {cells} |")
         if twist == "without twist":
             lines.append("| *universal-joint, prototype* | " + " | ".join(prototype.FREE) + " |")
     return "\n".join([*lines, _AFTER])

@@ -49,7 +49,7 @@ def page(found: dict[str, Any]) -> str:
             INTRODUCTION,
             scoreboard(all_bars(found)),
             filters.page(found["filter"]),
-            estimators.page(found["axes"], found["free"]),
+            estimators.page(found["axes"], found["free"], found["floor"]),
             angles.page(found["angles"]),
             normalization.page(found["normalization"]),
             papers_metrics.page(found["paper"], found["skipped"]),

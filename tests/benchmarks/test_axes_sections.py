@@ -1,7 +1,11 @@
 """Sections of the benchmark on small cases whose answer is known."""
 
+import json
+
 import numpy as np
 import pytest
+from benchmarks.axes import __main__ as main
+from benchmarks.axes import floor
 from benchmarks.axes.angles import run_cross_talk
 from benchmarks.axes.estimators import run, run_free
 from benchmarks.axes.normalization import POSES, PROTOCOLS, RULES, Protocol, record
@@ -173,3 +177,15 @@ def test_cross_talk_of_true_axes_is_the_noise():
     found = run_cross_talk(0)
     assert found["sway alone"] == pytest.approx(0.3, abs=0.15)
     assert found["true axes"] > 0.8  # about 1° of noise, more where axes are not square
+
+
+def test_without_twist_and_noise_least_twist_is_the_truth():
+    assert max(floor.run("clean", "without twist", 3000)) < 1e-4
+    assert max(floor.run("clean", "±10° of twist", 3000)) > 0.1  # chance twist pulls them away
+
+
+def test_figures_survive_the_file():
+    found = {"angles": {"a": np.nan, "b": [1.23456789, 2]}, "skipped": {}}
+    text = main._lines(main._short(found), depth=2)
+    assert json.loads(text) == {"angles": {"a": None, "b": [1.2346, 2]}, "skipped": {}}
+    assert len(text.splitlines()) == 7
