@@ -79,6 +79,28 @@ def fit_rigid(
     return RigidFit(rotations, shifts, status)
 
 
+def tells_pose(
+    shape: Array, seen: NDArray[np.bool_], *, min_spread: float = MIN_SPREAD
+) -> NDArray[np.bool_]:
+    """Return in which frames what is seen of a shape gives its pose: where `fit_rigid` succeeds.
+
+    Parameters
+    ----------
+    shape : (n_points, 3) m
+    seen : (n_frames, n_points)
+    min_spread
+        m, as `fit_rigid` takes it.
+    """
+    whole = bool(seen.all())
+    packed = np.packbits(seen[:1] if whole else seen, axis=1)
+    _, first, which = np.unique(packed, axis=0, return_index=True, return_inverse=True)
+    enough = np.zeros(len(first), dtype=np.bool_)
+    for i, frame in enumerate(first):
+        points = shape[seen[frame] & np.isfinite(shape).all(axis=1)]
+        enough[i] = len(points) > 2 and line_spread(points) > min_spread
+    return np.full(len(seen), enough[0]) if whole and len(seen) else enough[which.ravel()]
+
+
 def fit_rigid_batched(
     shape: Array,
     points: Array,

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from kinesphere.data import Array, Json, Recording, Step, TopologicalModel
+from kinesphere.data import Json, Recording, Step, TopologicalModel
 from kinesphere.errors import BadRecording
 from kinesphere.labelling.choice import (
     COVERED,
@@ -81,12 +81,6 @@ def _new_labels(
             old[name.column] = name.bare
             taken.add(name.bare)
     return {**old, **new}
-
-
-def _ever_seen(marker: Array) -> bool:
-    """Return whether a marker has a position in any frame, (n_frames, 3); most do in the first."""
-    first = bool(np.isfinite(marker[:1]).all(axis=1).any())
-    return first or bool(np.isfinite(marker).all(axis=1).any())
 
 
 def _step(

@@ -129,7 +129,7 @@ def _measure_limb(
     body = Body(joint.child, joint.parent, labels, shape[:-1], noise[:-1], shape[-1])
     body.centre_noise = float(noise[-1])
     carried = (Neighbour(_known(body.centre), centre, body.centre_noise),)
-    poses = fit_poses(body, own, carried, (), min_spread)
+    poses = fit_poses(body, own, carried, min_spread)
     body.rotations, body.shifts = poses.rotations, poses.shifts
     relative = np.swapaxes(parent.rotations, 1, 2) @ body.rotations
     if np.isfinite(relative).all(axis=(1, 2)).any():

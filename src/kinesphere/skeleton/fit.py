@@ -1,8 +1,10 @@
 """A labelled recording in, a measured skeleton and its motion out."""
 
 from collections.abc import Iterable
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 import kinesphere
 from kinesphere.data import (
@@ -18,15 +20,15 @@ from kinesphere.data import (
 from kinesphere.errors import BadRecording
 from kinesphere.skeleton.adoption import adopt, find_adoptions
 from kinesphere.skeleton.chain import measure_chain
-from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.report import describe_joint, describe_limb
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import scaled, size_share
 from kinesphere.skeleton.settings import SkeletonSettings
-from kinesphere.skeleton.solve import residuals, solve_poses
+from kinesphere.skeleton.solve import solve_poses
 from kinesphere.skeleton.tree import find_tree
 
 DEFAULT = SkeletonSettings()
+_A = TypeVar("_A", bound=NDArray[Any])
 
 
 def fit_skeleton(
@@ -79,7 +81,8 @@ def fit_skeleton(
         model = adopt(model, adopted)
         tree = find_tree(recording, model)
         bodies, joints = measure_chain(tree, model, sample, settings)
-    poses = solve_poses(tree, bodies, joints, markers, recording.rate, settings)
+    solved = solve_poses(tree, bodies, joints, markers, recording.rate, settings)
+    poses = {limb: solved.of(i) for i, limb in enumerate(tree.limbs)}
     described = {
         child: describe_joint(j, poses[j.model.parent], poses[child], bodies[child], settings)
         for child, j in joints.items()
@@ -110,17 +113,20 @@ def fit_skeleton(
     history = (*recording.history, step)
     return Motion(
         skeleton=Skeleton(limbs, tuple(described[limb] for limb in tree.limbs[1:]), history),
-        rotations=np.stack([poses[limb].rotations for limb in tree.limbs], axis=1),
-        origins=np.stack([poses[limb].shifts for limb in tree.limbs], axis=1),
-        residuals=np.stack(
-            [residuals(bodies[n], cloud(tree.markers[n], markers), poses[n]) for n in tree.limbs],
-            axis=1,
-        ),
-        flags=np.stack([poses[limb].flags for limb in tree.limbs], axis=1),
+        rotations=_given_away(solved.rotations),
+        origins=_given_away(solved.shifts),
+        residuals=_given_away(solved.residuals),
+        flags=_given_away(solved.flags),
         rate=recording.rate,
         first_frame=recording.first_frame,
         history=history,
     )
+
+
+def _given_away(array: _A) -> _A:
+    """Return an array nobody writes to any more: containers take it without a copy."""
+    array.flags.writeable = False
+    return array
 
 
 def _number(value: float) -> Json:

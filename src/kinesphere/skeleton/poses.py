@@ -6,13 +6,16 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from kinesphere.data import Array, Codes, Mask, PoseFlag
-from kinesphere.geometry.rigid import fit_rigid, out_of_frame
+from kinesphere.geometry.rigid import fit_rigid, out_of_frame, tells_pose
 from kinesphere.geometry.rotations import rotation_between
 from kinesphere.skeleton.body import NOISE, Body, seen
 from kinesphere.skeleton.body_axes import unit
 
 RELEASE = 0.75
 """A borrowed twist is given back when the flexion falls below this share of where it was taken."""
+
+BLOCK = 16384
+"""Frames fitted at a time."""
 
 
 class Poses(NamedTuple):
@@ -54,11 +57,12 @@ def fit_poses(
     body: Body,
     own: Array,
     joints: tuple[Neighbour, ...],
-    helpers: tuple[Neighbour, ...],
     min_spread: float,
-    measured: Mask | None = None,
+    poses: Poses | None = None,
 ) -> Poses:
     """Fit the limb's pose to its markers and joint centres, where they leave no freedom.
+
+    Block by block: what it needs besides its input and output does not grow with the recording.
 
     Parameters
     ----------
@@ -67,30 +71,29 @@ def fit_poses(
     own : (n_frames, n_markers, 3) m
         Its markers in the world.
     joints
-        Centres that always take part.
-    helpers
-        Centres that only stand in where the others do not suffice.
+        Joint centres that take part.
     min_spread
         m, as `kinesphere.geometry.rigid.fit_rigid` takes it.
-    measured : (n_frames,), optional
-        Where the limb's own markers suffice; found out if nobody knows yet.
+    poses
+        To be completed in place, where UNSEEN; new ones otherwise.
     """
-    poses = no_poses(len(own))
-    if measured is None and joints:
-        measured = fit_rigid(body.shape, own, min_spread=min_spread).fitted
-    for points in (joints, (*joints, *helpers)) if helpers else (joints,):
-        missing = poses.flags == PoseFlag.UNSEEN
-        if not missing.any():
-            break
-        world = np.concatenate([own, *(p.world[:, None] for p in points)], axis=1)
-        local = np.vstack([body.shape, *(p.here for p in points)])
-        weights = 1 / (np.array([*body.noise, *(p.noise for p in points)]) ** 2 + NOISE**2)
-        fit = fit_rigid(local, world[missing], weights, min_spread=min_spread)
-        at = np.flatnonzero(missing)[fit.fitted]
-        poses.rotations[at] = fit.rotations[fit.fitted]
-        poses.shifts[at] = fit.shifts[fit.fitted]
-        alone = True if measured is None else measured[at]
-        poses.flags[at] = np.where(alone, PoseFlag.MEASURED, PoseFlag.JOINT_AIDED)
+    poses = no_poses(len(own)) if poses is None else poses
+    local = np.vstack([body.shape, *(p.here for p in joints)])
+    weights = 1 / (np.array([*body.noise, *(p.noise for p in joints)]) ** 2 + NOISE**2)
+    for start in range(0, len(own), BLOCK):
+        block = slice(start, start + BLOCK)
+        open_ = poses.flags[block] == PoseFlag.UNSEEN
+        if not open_.any():
+            continue
+        at = block if open_.all() else start + np.flatnonzero(open_)
+        markers = own[at]
+        world = np.concatenate([markers, *(p.world[at, None] for p in joints)], axis=1)
+        fit = fit_rigid(local, world, weights, min_spread=min_spread)
+        poses.rotations[at] = fit.rotations
+        poses.shifts[at] = fit.shifts
+        alone = tells_pose(body.shape, seen(markers), min_spread=min_spread)
+        flags = np.where(alone, PoseFlag.MEASURED, PoseFlag.JOINT_AIDED)
+        poses.flags[at] = np.where(fit.fitted, flags, PoseFlag.UNSEEN)
     return poses
 
 
@@ -184,6 +187,8 @@ def bridge(
         Most frames of a gap.
     """
     known = poses.flags != PoseFlag.UNSEEN
+    if known.all():
+        return
     base = np.broadcast_to(np.eye(3), poses.rotations.shape) if parent is None else parent.rotations
     relative = np.swapaxes(base, 1, 2) @ poses.rotations
     for a, b in _gaps(known):

@@ -1,8 +1,9 @@
 """What is known of a joint, and what a person should know about it."""
 
 import numpy as np
+from numpy.typing import NDArray
 
-from kinesphere.data import Array, Joint, Limb, Observability
+from kinesphere.data import Array, Joint, Limb, Observability, PoseFlag
 from kinesphere.geometry.rotations import mean_rotation, rotation_angle
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import unit
@@ -32,7 +33,7 @@ def range_of_motion(relative: Array) -> float:
     known = relative[np.isfinite(relative).all(axis=(1, 2))]
     if len(known) < 2:
         return 0.0
-    known = known[np.unique(np.linspace(0, len(known) - 1, RANGE_SAMPLE).round().astype(int))]
+    known = known[_spread(len(known))]
     off = rotation_angle(mean_rotation(known).T @ known)
     usual = known[off <= np.quantile(off, 0.95)]
     trace = np.einsum("aij,bij->ab", usual, usual)
@@ -47,7 +48,7 @@ def describe_joint(
     assert body.centre is not None
     gap = np.linalg.norm(parent.carry(fit.centre) - child.carry(body.centre), axis=1)
     known = gap[np.isfinite(gap)]
-    moved = range_of_motion(np.swapaxes(parent.rotations, 1, 2) @ child.rotations)
+    moved = range_of_motion(_relative(parent, child))
     verdict, note = verdict_on(measured, moved, settings)
     return Joint(
         name=model.name,
@@ -60,6 +61,21 @@ def describe_joint(
         covariance=fit.covariance,
         observability=verdict,
         note=note,
+    )
+
+
+def _relative(parent: Poses, child: Poses) -> Array:
+    """Return ``parent_from_child`` in frames spread over those that show both, (n, 3, 3)."""
+    both = np.flatnonzero((parent.flags != PoseFlag.UNSEEN) & (child.flags != PoseFlag.UNSEEN))
+    at = both[_spread(len(both))]
+    relative: Array = np.swapaxes(parent.rotations[at], 1, 2) @ child.rotations[at]
+    return relative
+
+
+def _spread(count: int) -> NDArray[np.intp]:
+    """Return `RANGE_SAMPLE` indices at most, evenly among ``count``."""
+    return np.unique(
+        np.linspace(0, max(count - 1, 0), min(count, RANGE_SAMPLE)).round().astype(int)
     )
 
 

@@ -8,6 +8,9 @@ from kinesphere.data import Array
 JUMP = 0.05
 """m, most a marker's step between frames counts: a ghost's jump is no motion."""
 
+BLOCK = 16384
+"""Frames looked at at a time."""
+
 
 def spread_frames(markers: Array, count: int) -> NDArray[np.intp]:
     """Return frames spread evenly over the way the markers travel relative to each other.
@@ -28,13 +31,11 @@ def spread_frames(markers: Array, count: int) -> NDArray[np.intp]:
     n_frames = len(markers)
     if n_frames <= count:
         return np.arange(n_frames)
-    known = np.asarray(np.isfinite(markers).all(axis=2))
-    steps = np.diff(np.where(known[..., None], markers, 0.0), axis=0)
-    both = known[1:] & known[:-1]
-    seen = np.maximum(both.sum(axis=1), 1)
-    shift = (steps * both[..., None]).sum(axis=1) / seen[:, None]
-    length = np.minimum(np.linalg.norm(steps - shift[:, None], axis=2), JUMP)
-    way = np.concatenate([[0.0], np.cumsum((length * both).sum(axis=1) / seen)])
+    steps = np.zeros(n_frames)
+    for start in range(0, n_frames - 1, BLOCK):
+        block = markers[start : start + BLOCK + 1]
+        steps[start + 1 : start + len(block)] = _step_lengths(block)
+    way = np.cumsum(steps)
     # a little of plain time keeps a recording without motion evenly sampled
     way += np.linspace(0.0, 0.05 * way[-1] + 1e-9, n_frames)
     wanted = np.linspace(0.0, way[-1], count)
@@ -42,3 +43,16 @@ def spread_frames(markers: Array, count: int) -> NDArray[np.intp]:
     # the nearest, not the next: the same frames when time runs backwards
     nearest = np.where(way[after] - wanted < wanted - way[after - 1], after, after - 1)
     return np.unique(nearest)
+
+
+def _step_lengths(markers: Array) -> Array:
+    """Return the mean step of the markers, less what they have in common, (n, m, 3) → (n-1,) m."""
+    steps = np.diff(markers, axis=0)
+    both = np.asarray(np.isfinite(steps).all(axis=2))
+    if not both.all():
+        steps = np.where(both[..., None], steps, 0.0)
+    seen = np.maximum(both.sum(axis=1), 1)
+    off = steps - (steps.sum(axis=1) / seen[:, None])[:, None]
+    length = np.minimum(np.sqrt(np.einsum("nmi,nmi->nm", off, off)), JUMP)
+    mean: Array = (length * both).sum(axis=1) / seen
+    return mean

@@ -1,16 +1,35 @@
 """Every limb's pose in every frame: outward from the root, then inward for what is still open."""
 
+from typing import NamedTuple
+
 import numpy as np
 
-from kinesphere.data import Array, PoseFlag
+from kinesphere.data import Array, Codes, PoseFlag
 from kinesphere.geometry.rigid import out_of_frame
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import unit
 from kinesphere.skeleton.chain import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud, next_normals
-from kinesphere.skeleton.poses import Neighbour, Poses, aim, bridge, fit_poses, no_poses
+from kinesphere.skeleton.poses import BLOCK, Neighbour, Poses, aim, bridge, fit_poses
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree
+
+
+class PoseArrays(NamedTuple):
+    """The poses of all limbs side by side, as a motion holds them."""
+
+    rotations: Array
+    """(n_frames, n_limbs, 3, 3) ``world_from_limb``; NaN where unseen."""
+    shifts: Array
+    """(n_frames, n_limbs, 3) m."""
+    flags: Codes
+    """(n_frames, n_limbs) PoseFlag."""
+    residuals: Array
+    """(n_frames, n_limbs) m, rms distance of the markers from where the pose puts them."""
+
+    def of(self, limb: int) -> Poses:
+        """Return one limb's poses, as views."""
+        return Poses(self.rotations[:, limb], self.shifts[:, limb], self.flags[:, limb])
 
 
 def solve_poses(
@@ -20,8 +39,8 @@ def solve_poses(
     markers: dict[str, Array],
     rate: float,
     settings: SkeletonSettings,
-) -> dict[str, Poses]:
-    """Return the poses of every limb in every frame.
+) -> PoseArrays:
+    """Return the poses of every limb in every frame; limbs in the tree's order.
 
     Parameters
     ----------
@@ -30,55 +49,93 @@ def solve_poses(
     rate
         Hz.
     """
+    n_frames, n_limbs = len(next(iter(markers.values()))), len(tree.limbs)
+    arrays = PoseArrays(
+        np.full((n_frames, n_limbs, 3, 3), np.nan),
+        np.full((n_frames, n_limbs, 3), np.nan),
+        np.full((n_frames, n_limbs), PoseFlag.UNSEEN, dtype=np.uint8),
+        np.full((n_frames, n_limbs), np.nan),
+    )
+    measured = _Measured(tree, bodies, joints, markers)
+    for i, limb in enumerate(tree.limbs):
+        body, poses = bodies[limb], arrays.of(i)
+        own = cloud(tree.markers[limb], markers)
+        parent = None if body.parent is None else arrays.of(tree.limbs.index(body.parent))
+        _solve_limb(body, own, parent, measured, poses, rate, settings)
+        arrays.residuals[:, i] = residuals(body, own, poses)
+    return arrays
+
+
+class _Measured(NamedTuple):
+    """What is known before any pose in the whole recording is."""
+
+    tree: Tree
+    bodies: dict[str, Body]
+    joints: dict[str, MeasuredJoint]
+    markers: dict[str, Array]
+
+
+def _solve_limb(
+    body: Body,
+    own: Array,
+    parent: Poses | None,
+    measured: _Measured,
+    poses: Poses,
+    rate: float,
+    settings: SkeletonSettings,
+) -> None:
+    """Find one limb's poses, in place; every way only where those before it left a frame open."""
+    longest = int(settings.fill_gap_s * rate)
     min_spread = settings.min_spread_mm * 1e-3
-    own = {limb: cloud(tree.markers[limb], markers) for limb in tree.limbs}
-    alone = {
-        limb: fit_poses(bodies[limb], own[limb], (), (), min_spread)
-        for limb in tree.limbs
-        if not bodies[limb].twist_open
-    }
-    poses: dict[str, Poses] = {}
-    for limb in tree.limbs:
-        body = bodies[limb]
-        parent = None if body.parent is None else poses[body.parent]
-        centre = None if parent is None else parent.carry(joints[limb].fit.centre)
-        helpers = tuple(
-            Neighbour(
-                joints[child].fit.centre,
-                alone[child].carry(_centre(bodies[child])),
-                bodies[child].centre_noise,
-            )
-            for child in tree.children(limb)
-            if child in alone and (alone[child].flags != PoseFlag.UNSEEN).any()
-        )
+    centre = None if parent is None else parent.carry(measured.joints[body.name].fit.centre)
+    if not body.twist_open:
         near = () if centre is None else (Neighbour(_centre(body), centre, body.centre_noise),)
-        longest = int(settings.fill_gap_s * rate)
-        if body.twist_open:
-            poses[limb] = no_poses(len(own[limb]))
-        else:
-            measured = alone[limb].flags == PoseFlag.MEASURED
-            poses[limb] = fit_poses(body, own[limb], near, helpers, min_spread, measured)
-            bridge(poses[limb], body, parent, centre, longest)
-        if parent is not None and centre is not None:
-            flexed = np.deg2rad(settings.flexed_deg)
-            reach = np.linalg.norm(body.shape - _centre(body), axis=1)
-            far = int(np.nan_to_num(reach, nan=-1.0).argmax())
-            end = own[limb][:, far]
-            normals = next_normals(limb, unit(end - centre), end, tree, markers)
-            aim(body, own[limb], centre, parent, normals, flexed, poses[limb])
-            if body.twist_open:
-                bridge(poses[limb], body, parent, centre, longest)
-    return poses
+        fit_poses(body, own, near, min_spread, poses)
+        if helpers := _helpers(body.name, measured, min_spread, poses):
+            fit_poses(body, own, (*near, *helpers), min_spread, poses)
+        bridge(poses, body, parent, centre, longest)
+    if parent is None or centre is None or (poses.flags != PoseFlag.UNSEEN).all():
+        return
+    reach = np.linalg.norm(body.shape - _centre(body), axis=1)
+    end = own[:, int(np.nan_to_num(reach, nan=-1.0).argmax())]
+    normals = next_normals(body.name, unit(end - centre), end, measured.tree, measured.markers)
+    aim(body, own, centre, parent, normals, np.deg2rad(settings.flexed_deg), poses)
+    if body.twist_open:
+        bridge(poses, body, parent, centre, longest)
+
+
+def _helpers(
+    limb: str, measured: _Measured, min_spread: float, poses: Poses
+) -> tuple[Neighbour, ...]:
+    """Return where the limbs beyond see the joints they share with a limb that is still unseen."""
+    tree, bodies, joints, markers = measured
+    open_ = np.flatnonzero(poses.flags == PoseFlag.UNSEEN)
+    helpers = []
+    for child in tree.children(limb) if len(open_) else ():
+        if bodies[child].twist_open:
+            continue
+        own = cloud(tree.markers[child], {m: markers[m][open_] for m in tree.markers[child]})
+        alone = fit_poses(bodies[child], own, (), min_spread)
+        if (alone.flags == PoseFlag.UNSEEN).all():
+            continue
+        world = np.full((len(poses.flags), 3), np.nan)
+        world[open_] = alone.carry(_centre(bodies[child]))
+        helpers.append(Neighbour(joints[child].fit.centre, world, bodies[child].centre_noise))
+    return tuple(helpers)
 
 
 def residuals(body: Body, own: Array, poses: Poses) -> Array:
     """Return the rms distance of a limb's markers from where its pose puts them, (n_frames,) m."""
-    off = ((own - out_of_frame(poses.rotations, poses.shifts, body.shape)) ** 2).sum(axis=2)
-    known = np.isfinite(off)
-    count = known.sum(axis=1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        rms: Array = np.sqrt(np.where(known, off, 0.0).sum(axis=1) / count)
-    return np.where(count > 0, rms, np.nan)
+    rms = np.full(len(own), np.nan)
+    for start in range(0, len(own), BLOCK):
+        at = slice(start, start + BLOCK)
+        off = own[at] - out_of_frame(poses.rotations[at], poses.shifts[at], body.shape)
+        square = np.einsum("nmi,nmi->nm", off, off)
+        known = np.isfinite(square)
+        count = known.sum(axis=1)
+        total = np.where(known, square, 0.0).sum(axis=1)
+        rms[at] = np.where(count > 0, np.sqrt(total / np.maximum(count, 1)), np.nan)
+    return rms
 
 
 def _centre(body: Body) -> Array:
