@@ -9,10 +9,10 @@ class HeatMap {
     this.canvas.style.height = `${scene.limbs.length * this.row}px`;
     this.high = this.findHigh();
   }
-  /* 98 % of all residuals lie below the hottest colour. */
+  /* 98 % of all residuals lie below the hottest colour; what skin does on any limb never has it. */
   findHigh() {
     const known = [...this.data.limb_residuals.values].filter(Number.isFinite).sort((a, b) => a - b);
-    return Math.max(2, known.length ? known[Math.floor(known.length * 0.98)] : 0);
+    return Math.max(8, known.length ? known[Math.floor(known.length * 0.98)] : 0);
   }
   x(time) {
     const wide = this.canvas.clientWidth - this.left;
