@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from kinesphere.data import Analog, Event, Output, Recording
 from kinesphere.errors import BadRecording
 from kinesphere.io.c3d import read_c3d, write_c3d
+from kinesphere.io.c3d.parameters import Group, Section, words
 from kinesphere.io.c3d.processor import INTEL
 from kinesphere.io.c3d.section import bytes_from_section, section_from_bytes
 
@@ -394,6 +395,13 @@ def test_parameters_of_one_name_become_several_and_the_last_keeps_it(c3d_file, t
     before = read_c3d(c3d_file(groups={"P": {"Mass": [1.0], "mass": [2.0], "Mass_1": [3.0]}}))
     group = source(rewritten(before, tmp_path)).layout.section.group("P")
     assert [p.name for p in group.parameters] == ["Mass_2", "mass", "Mass_1"]
+
+
+def test_a_group_said_twice_keeps_the_parameters_of_both():
+    first, second = words("USED", 3), words("FRAMES", 9)
+    twice = (Group(5, "POINT", parameters=(first,)), Group(5, "POINT", parameters=(second,)))
+    (group,) = section_from_bytes(bytes_from_section(Section(twice)), INTEL).groups
+    assert group.parameters == (first, second)
 
 
 def test_descriptions_and_locks_are_kept(rich):
