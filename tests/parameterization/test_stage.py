@@ -346,6 +346,18 @@ def test_gaps_change_nothing_elsewhere(performance):
     assert_array_equal(gappy.angles[~seen, 0], whole.angles[~seen, 0])
 
 
+def test_axes_are_used_again_on_another_recording(performance, solved):
+    free = slice(round(performance.calibration[1] * 25), None)
+    again = parameterize(cut(performance.motion, free), reuse=solved.skeleton)
+    for joint in again.skeleton.joints:
+        before = solved.skeleton.joint(joint.name)
+        assert joint.axes_source == "reused"
+        assert_array_equal(joint.axes, before.axes)
+        assert_array_equal(joint.rest, before.rest)
+        assert_array_equal(joint.axes_uncertainty, before.axes_uncertainty)
+    assert_allclose(again.angles, solved.angles[free], atol=1e-12)
+
+
 def test_axes_of_a_stranger_with_other_joints_are_no_help(performance):
     motion = only(performance.motion, ["trunk", "left_thigh"])
     stranger = only(performance.motion, ["trunk", "right_thigh"]).skeleton

@@ -1,14 +1,15 @@
 """What an axis leaves unexplained of a limb's motion, and the axis that leaves least."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array
-from kinesphere.geometry.rotations import mean_rotation, rotation_about
+from kinesphere.geometry.rotations import mean_rotation
 from kinesphere.parameterization.samples import JointSamples, Phase
-from kinesphere.parameterization.twist import closed_twist
 
 FLOOR = float(np.deg2rad(1e-4))  # a spread below this is rounding, not noise
 STEP = 1e-5  # rad, of the numerical derivative
@@ -32,16 +33,16 @@ class ConeAndTwist:
     inverse variance and frames that something spoiled count little.
     """
 
-    rotations: Array
-    """(n, 3, 3)"""
     positions: Array
-    """(n, 3)"""
+    """(n, 3) direction of the limb."""
     means: Array
-    """(n, 3, 3) mean rotation of the frame's phase."""
+    """(n, 3) direction of the limb in the mean rotation of the frame's phase."""
+    scalars: Array
+    """(n,) of the unit quaternions that turn the mean rotation into the frame's."""
+    vectors: Array
+    """(n, 3) of the same quaternions."""
     phase: NDArray[np.intp]
     """(n,)"""
-    long_axis: Array
-    """(3,)"""
     effective: float
     """How many frames have errors of their own."""
 
@@ -52,28 +53,39 @@ class ConeAndTwist:
         stride = max(1, length // most)
         parts = [samples.rotations[a:b:stride] for a, b in phases]
         counts = [len(part) for part in parts]
-        rotations = np.concatenate(parts)
+        means = [mean_rotation(part) for part in parts]
+        turns = [part @ mean.T for part, mean in zip(parts, means, strict=True)]
+        q = Rotation.from_matrix(np.concatenate(turns)).as_quat()
         return cls(
-            rotations=rotations,
-            positions=rotations @ samples.long_axis,
-            means=np.repeat([mean_rotation(part) for part in parts], counts, axis=0),
+            positions=np.concatenate(parts) @ samples.long_axis,
+            means=np.repeat([mean @ samples.long_axis for mean in means], counts, axis=0),
+            scalars=q[:, 3],
+            vectors=q[:, :3],
             phase=np.repeat(np.arange(len(parts)), counts),
-            long_axis=samples.long_axis,
-            effective=min(float(len(rotations)), max(1.0, length / samples.rate / MEMORY)),
+            effective=min(float(len(q)), max(1.0, length / samples.rate / MEMORY)),
         )
 
-    def colatitudes(self, axis: Array) -> Array:
-        """Return the angle of every direction to an axis in rad, (n,)."""
-        p = self.positions
-        return np.asarray(np.arctan2(np.linalg.norm(np.cross(axis, p), axis=1), p @ axis))
+    @cached_property
+    def _parts(self) -> tuple[Array, ...]:
+        """What an axis is multiplied with, arrays (n, 3), and two products that it is not."""
+        p, r, v = self.positions, self.means, self.vectors
+        return np.cross(r, p), np.cross(p, v), (p * r).sum(axis=1), (p * v).sum(axis=1)
 
-    def twists(self, axis: Array) -> Array:
-        """Return what is left when swing about the axis is taken out, (n,) rad."""
-        r, p = self.means @ self.long_axis, self.positions
-        theta = np.arctan2(np.cross(r, p) @ axis, (p * r).sum(axis=1) - (r @ axis) * (p @ axis))
-        return closed_twist(
-            rotation_about(axis, theta) @ self.means, self.rotations, self.long_axis
-        )
+    def errors(self, axes: Array) -> tuple[Array, Array]:
+        """Return colatitude and twist of every frame about each axis, (k, 3) → (k, n) rad twice.
+
+        With ``D = R(p, τ) R(a, θ)`` the turn from the mean rotation, θ the azimuth from mean to
+        present direction p, the twist is that of the quaternion product ``D · R(a, −θ)`` about p.
+        """
+        p_a, r_a = axes @ self.positions.T, axes @ self.means.T
+        across, crossed, along, turned = self._parts
+        colatitude = np.arctan2(np.sqrt(np.maximum(0.0, 1 - p_a**2)), p_a)
+        half = np.arctan2(axes @ across.T, along - r_a * p_a) / 2
+        s, c = np.sin(half), np.cos(half)
+        sine = c * turned - s * (self.scalars * p_a + axes @ crossed.T)
+        cosine = c * self.scalars + s * (axes @ self.vectors.T)
+        sine = np.where(cosine < 0, -sine, sine)  # both quaternions of a rotation mean the same
+        return colatitude, 2 * np.arctan2(sine, np.abs(cosine))
 
     def centred(self, values: Array, weights: Array) -> Array:
         """Return values, (n,), less their weighted mean in each phase."""
@@ -119,11 +131,12 @@ def likeliest_axis(
         first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
         first /= np.linalg.norm(first)
         basis = np.stack([first, np.cross(axis, first)])
-        near = axis + STEP * basis
+        near = np.vstack([axis, axis + STEP * basis])
         near /= np.linalg.norm(near, axis=1)[:, None]
-        colatitude, twist = errors.colatitudes(axis), errors.twists(axis)
-        tilted = [(errors.colatitudes(a) - colatitude) / STEP for a in near]
-        twisted = [(errors.twists(a) - twist) / STEP for a in near]
+        colatitudes, twists = errors.errors(near)
+        colatitude, twist = colatitudes[0], twists[0]
+        tilted = list((colatitudes[1:] - colatitude) / STEP)
+        twisted = list((twists[1:] - twist) / STEP)
         if cone is not None:
             opening = float(np.median(colatitude))
             out = colatitude - opening
