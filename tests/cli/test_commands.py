@@ -262,3 +262,18 @@ def test_json_has_null_for_what_is_not_known(capsys):
 
     print_json({"a": float("nan"), "b": (1.0, float("inf")), "c": np.inf})
     assert json.loads(capsys.readouterr().out) == {"a": None, "b": [1.0, None], "c": None}
+
+
+def test_a_warning_has_a_line_for_each_reason(capsys):
+    from kinesphere.cli.console import print_warnings, stdout
+
+    warning = "not told: left_hip (3° apart; hardly moves), right_hip (9° apart), neck (odd)"
+    names = ("left_hip", "right_hip", "neck")
+    print_warnings(stdout(), [warning, "and \x1b[31m"], names)
+    assert capsys.readouterr().out.splitlines() == [
+        "! not told",
+        "    hips: 3–9° apart",
+        "    left hip: hardly moves",
+        "    neck: odd",
+        "! and �[31m",
+    ]

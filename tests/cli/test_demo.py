@@ -15,6 +15,7 @@ NEAR = {
     "markers": 0.1,  # mm
 }
 """What the line promises without noise."""
+NARROW = 110  # columns of a terminal that is not wide
 
 
 @pytest.mark.slow
@@ -35,6 +36,10 @@ def test_demo_in_words(call, tmp_path):
     assert called.code == 0, called.err
     for words in ("Truth against estimate", "joint centre", "reconstruction", "Report:"):
         assert words in called.out
+    joints = called.out.partition("Joints\n")[2].partition("\n\n")[0].splitlines()
+    rows = [line for line in joints if " from movement" in line]
+    assert len(rows) == 11  # none is broken into two lines
+    assert max(map(len, rows)) <= NARROW
 
 
 def test_truth_names_the_worst_and_counts_what_was_not_estimated(capsys):
