@@ -8,6 +8,7 @@ import pytest
 from kinesphere.data import Recording
 from kinesphere.errors import UnknownFormat, UnreadableFile
 from kinesphere.io import known_formats, read, write
+from kinesphere.io.registry import function_named
 
 
 @pytest.fixture
@@ -90,14 +91,37 @@ def test_writing_into_what_cannot_hold_it_names_what_can(recording, tmp_path):
 
 def test_every_format_can_be_found(recording):
     """The named functions exist: a misspelt one would show only when somebody needs it."""
-    from kinesphere.io.registry import _function
-
     for known in known_formats():
         for name in (known.reader, *known.writers.values()):
-            assert not name or callable(_function(name)), (known.name, name)
+            assert not name or callable(function_named(name)), (known.name, name)
 
 
 def test_importing_the_package_loads_no_format():
     code = "import sys, kinesphere; print(*(m for m in sys.modules if 'kinesphere.' in m))"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "kinesphere.io" not in said.stdout
+
+
+HUGE = 2**36  # bytes, all holes: reading them whole would take the machine's memory
+
+
+@pytest.mark.parametrize("name", ["a.trc", "a.csv", "a.json"])
+def test_a_huge_file_with_a_text_beginning_is_left_alone_soon(tmp_path, name):
+    heads = {
+        "a.trc": "PathFileType\t4\t(X/Y/Z)\ta.trc\n",
+        "a.csv": "time_s,A.x_m,A.y_m,A.z_m\n",
+        "a.json": '{"format": "kinesphere-model", ',
+    }
+    path = tmp_path / name
+    path.write_text(heads[name])
+    os.truncate(path, HUGE)
+    with pytest.raises(UnreadableFile):
+        read(path)
+
+
+def test_a_c3d_file_with_a_huge_tail_is_read_without_it(tmp_path):
+    path = tmp_path / "a.c3d"
+    markers = np.arange(4 * 2 * 3, dtype=float).reshape(4, 2, 3) / 8
+    write(Recording(markers=markers, labels=("A", "B"), rate=50.0), path)
+    os.truncate(path, HUGE)
+    np.testing.assert_allclose(read(path).markers, markers, atol=1e-7)

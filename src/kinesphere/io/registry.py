@@ -1,15 +1,16 @@
 """Which formats there are: read by what a file holds, written by how it is called."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from kinesphere.errors import UnknownFormat, UnreadableFile
 
 HEAD_BYTES = 4096
 """How much of a file a format may look at to recognise it."""
+_PART_BYTES = 2**24
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ def read(path: str | Path) -> Any:
         If no reader recognises it.
     """
     path = Path(path)
-    return _function(_recognise(path).reader)(path)
+    return function_named(_recognise(path).reader)(path)
 
 
 def write(obj: Any, path: str | Path) -> None:
@@ -77,22 +78,29 @@ def write(obj: Any, path: str | Path) -> None:
     suffix = path.suffix.lower() if not path.is_dir() else ""
     for candidate in able:
         if suffix in candidate.suffixes:
-            _function(candidate.writers[kind])(obj, path)
+            function_named(candidate.writers[kind])(obj, path)
             return
     possible = ", ".join(f"{f.suffixes[0] or 'a folder'} ({f.name})" for f in able)
     shown = f"suffix {suffix!r}" if suffix else "no suffix"
     raise UnknownFormat(f"{path}: {shown} names no format that holds a {kind}; known: {possible}")
 
 
-def read_bytes(path: Path, limit: int | None = None) -> bytes:
-    """Return the (first ``limit``) bytes of a file, or say plainly why there are none."""
+def read_bytes(path: Path, limit: int | None = None, stop: bytes = b"") -> bytes:
+    """Return the (first ``limit``) bytes of a file, or say plainly why there are none.
+
+    Reading ends soon after the first ``stop``, so that a huge file that is none of ours costs
+    neither time nor memory.
+    """
     try:
         if path.is_dir():
             raise UnreadableFile(f"{path} is a folder, not a file")
         if path.exists() and not path.is_file():
             raise UnreadableFile(f"{path} is a device or a pipe, not a file")
         with path.open("rb") as file:
-            content = file.read(-1 if limit is None else limit)
+            if stop:
+                content = b"".join(_until(file, stop))
+            else:
+                content = file.read(-1 if limit is None else limit)
     except FileNotFoundError:
         raise UnreadableFile(f"{path}: there is no such file") from None
     except (OSError, ValueError) as error:  # ValueError: a null character in the path
@@ -100,6 +108,13 @@ def read_bytes(path: Path, limit: int | None = None) -> bytes:
     if not content:
         raise UnreadableFile(f"{path} is empty")
     return content
+
+
+def _until(file: BinaryIO, stop: bytes) -> Iterator[bytes]:
+    while part := file.read(_PART_BYTES):
+        yield part
+        if stop in part:
+            return
 
 
 def _recognise(path: Path) -> Format:
@@ -138,7 +153,8 @@ def _describe(head: bytes) -> str:
     return f"unknown binary data (first bytes {head[:4].hex(' ')})"
 
 
-def _function(name: str) -> Callable[..., Any]:
+def function_named(name: str) -> Callable[..., Any]:
+    """Import what a format calls ``"module:function"``."""
     module, _, function = name.partition(":")
     found: Callable[..., Any] = getattr(import_module(module), function)
     return found
