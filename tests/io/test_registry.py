@@ -1,8 +1,10 @@
 """Formats are recognised by what a file holds."""
 
+import os
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from kinesphere.data import Recording
