@@ -52,6 +52,8 @@ def test_reasons_are_told_apart_most_common_first():
         ("labels LFHD, left_hip_marker, x", "labels LFHD, left_hip_marker, x"),
         ("left out: STRANGE (no reason we know)", "left out: STRANGE (no reason we know)"),
         ("trailing: neck (still) and more", "trailing: neck (still) and more"),
+        ("both: with more, neck (still)", "both: with more, neck (still)"),
+        ("at left_hip, right_hip, L_X", "at left_hip, right_hip, L_X"),
         ("", ""),
     ],
 )
