@@ -33,8 +33,8 @@ def _paper(results: dict[str, Any]) -> list[str]:
     return [
         "## Against the paper",
         "",
-        "Sar Dessai, Hornung & Kobbelt (2006, section 5) took their times on 24,000 frames and",
-        "a computer of then. So that methods and not computers are compared, the per-frame part is",
+        "Sar Dessai, Hornung & Kobbelt (2006, section 5) timed 24,000 frames on a computer of their",
+        "day. So that methods and not computers are compared, the per-frame part of the paper is",
         "written down once more as it stands, in `benchmarks/speed/twin.py`: frame by frame, two",
         "circles intersected by solving for their common line, the candidate nearest to the frame",
         "before, the twist by 360 samples, these at least in one NumPy call.",
