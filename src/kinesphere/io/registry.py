@@ -1,5 +1,6 @@
 """Which formats there are: read by what a file holds, written by how it is called."""
 
+import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -100,7 +101,8 @@ def read_bytes(path: Path, limit: int | None = None, stop: bytes = b"") -> bytes
             if stop:
                 content = b"".join(_until(file, stop))
             else:
-                content = file.read(-1 if limit is None else limit)
+                size = max(os.fstat(file.fileno()).st_size, HEAD_BYTES)
+                content = file.read(size if limit is None else min(limit, size))
     except FileNotFoundError:
         raise UnreadableFile(f"{path}: there is no such file") from None
     except (OSError, ValueError) as error:  # ValueError: a null character in the path

@@ -17,7 +17,7 @@ def read_text(path: Path) -> str:
     UnreadableFile
         If the file is missing, a folder, empty or binary.
     """
-    raw = read_bytes(path)
+    raw = read_bytes(path, stop=b"\0")
     if not raw.strip():
         raise UnreadableFile(f"{path} holds nothing but blanks")
     if (at := raw.find(b"\0")) >= 0:

@@ -17,7 +17,7 @@ def read_xml(path: Path) -> ElementTree.Element:
         If the file is no XML, naming line and column; if it declares a document type, the only
         way to entities that grow without bound or point elsewhere.
     """
-    content = read_bytes(path)
+    content = read_bytes(path, stop=b"\0")
     guard = expat.ParserCreate()
     guard.StartDoctypeDeclHandler = _refuse
     try:

@@ -46,8 +46,15 @@ class Layout:
         return self.start + self.n_frames * self.words_per_frame * (4 if self.is_float else 2)
 
 
-def layout_of(content: bytes) -> Layout:
+def layout_of(content: bytes, size: int | None = None) -> Layout:
     """Read the header and the parameters of a file and check what they promise.
+
+    Parameters
+    ----------
+    content
+        The file, or so much of its beginning that the parameters are in it.
+    size
+        Bytes in the whole file; those of ``content`` if not given.
 
     Raises
     ------
@@ -55,6 +62,7 @@ def layout_of(content: bytes) -> Layout:
         Naming what the file says that cannot be, or how much of it is missing.
     """
     warnings: list[str] = []
+    size = len(content) if size is None else size
     processor, start = _find_section(content)
     header = header_from_bytes(content[:BLOCK], processor)
     section = section_from_bytes(content[start : _section_end(content, start, header)], processor)
@@ -66,7 +74,7 @@ def layout_of(content: bytes) -> Layout:
     )
     per_frame, n_channels = _analog(header, section, warnings)
     is_float, scale = _scale(header, section, warnings)
-    data_start = _data_start(content, start, header, section, warnings)
+    data_start = _data_start(size, start, header, section, warnings)
     words_per_frame = 4 * n_points + per_frame * n_channels
     n_frames = _n_frames(header, section)
     if n_frames < 1:
@@ -76,7 +84,7 @@ def layout_of(content: bytes) -> Layout:
     if words_per_frame == 0:
         raise UnreadableFile("the file holds neither points nor analog channels")
     frame_bytes = words_per_frame * (4 if is_float else 2)
-    present = max(0, len(content) - data_start) // frame_bytes
+    present = max(0, size - data_start) // frame_bytes
     if n_frames > present:
         raise UnreadableFile(
             f"the data section is cut short: {n_frames} frames of {n_points} points declared, "
@@ -166,7 +174,7 @@ def _scale(header: Header, section: Section, warnings: list[str]) -> tuple[bool,
 
 
 def _data_start(
-    content: bytes, section_start: int, header: Header, section: Section, warnings: list[str]
+    size: int, section_start: int, header: Header, section: Section, warnings: list[str]
 ) -> int:
     said = section.count("POINT", "DATA_START")
     for block in (header.data_block, said):
@@ -175,12 +183,12 @@ def _data_start(
             if block != header.data_block:
                 warnings.append(f"the header lets the data start at block {header.data_block}; "
                                 f"POINT:DATA_START {said} is taken")  # fmt: skip
-            if start > len(content):
+            if start > size:
                 break
             return start
     raise UnreadableFile(
         f"the data should start at block {header.data_block} (header) or {said} "
-        f"(POINT:DATA_START); the file has {len(content) / BLOCK:.1f} blocks"
+        f"(POINT:DATA_START); the file has {size / BLOCK:.1f} blocks"
     )
 
 

@@ -28,6 +28,10 @@ from kinesphere.io.units import length_unit
 from kinesphere.io.vendor import kind_of_type, output_kinds
 
 _AXIS = re.compile(r"([+-]?)([XYZ])([+-]?)", re.IGNORECASE)
+_BEGINNING = 2**26
+"""Bytes; the parameters end before the data, which start in one of 65,535 blocks of 512."""
+_BEHIND = 2**26
+"""Bytes kept behind the last frame: rotations lie there, and padding that is no data."""
 _STANDARD_GROUPS = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS")
 
 
@@ -44,9 +48,13 @@ def read_c3d(path: str | Path) -> Recording:
         Naming what is missing, cut short or impossible.
     """
     path = Path(path)
-    content = read_bytes(path)
+    content = read_bytes(path, _BEGINNING)
     try:
-        layout = layout_of(content)
+        size = path.stat().st_size
+        layout = layout_of(content, size)
+        if size > len(content):
+            content = read_bytes(path, layout.end + _BEHIND)
+            layout = layout_of(content)
     except UnreadableFile as error:
         raise UnreadableFile(f"{path}: {error}") from None
     return _recording(path, content, layout, frames_from_bytes(content, layout))
