@@ -33,7 +33,7 @@ def _paper(results: dict[str, Any]) -> list[str]:
     return [
         "## Against the paper",
         "",
-        "Sar Dessai, Hornung & Kobbelt (2006, section 5) timed 24,000 frames on a computer of their",
+        "Sar Dessai, Hornung & Kobbelt (2006, section 5) timed 24,000 frames on a computer of its",
         "day. So that methods and not computers are compared, the per-frame part of the paper is",
         "written down once more as it stands, in `benchmarks/speed/twin.py`: frame by frame, two",
         "circles intersected by solving for their common line, the candidate nearest to the frame",
