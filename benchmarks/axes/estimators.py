@@ -190,7 +190,7 @@ it found and falls back to the body's axes, saying so, both axes count as 90° o
 """
 _MEANING = """
 Position-only methods that fit planes through the joint (PCA, EM, Direction Joining) assume a great
-circle. A limb at 75° to its axes makes them wrong by as much as it misses the right angle, and
+circle. A limb at 75° to its axes makes them wrong by a little more than the missing 15°, and
 *without any noise*; more data do not help. Methods that use orientations, or circles of any size,
 do not have this bias. PCA fails even on great circles, because the directions of movements need
 not be perpendicular. EM fails now and then from the PCA start and hardly ever from many starts:
