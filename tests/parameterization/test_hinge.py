@@ -104,10 +104,10 @@ def test_little_movement_tells_no_free_hinge(rng):
 
 def test_the_jackknife_knows_how_uncertain_an_axis_is(rng):
     errors, deviations = [], []
-    for _ in range(12):
+    for _ in range(24):
         samples, axis = hinge(rng, n=600, noise=2.0)
         found = free_hinge(samples, axis)
         errors.append(degrees(found.axis, axis))
         deviations.append(np.rad2deg(found.uncertainty))
     ratio = np.sqrt(np.mean(np.square(errors)) / np.mean(np.square(deviations)))
-    assert 0.3 < ratio < 2.0  # of an error and its own estimate, four folds each
+    assert 0.6 < ratio < 1.9  # 1.1 over many; four folds make a rough estimate

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from kinesphere.parameterization.main_movements import best_cut, main_movements
+from kinesphere.parameterization.main_movements import best_cut, long_phases, main_movements
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import AxesSettings
 
@@ -65,3 +65,10 @@ def test_a_small_movement_is_no_main_movement():
     small = samples(about(np.outer(swing(100, 4), [1.0, 0, 0])), ((0, 100),))
     assert next(iter(main_movements(small, AxesSettings()))) == ()
     assert next(iter(main_movements(small, AxesSettings(smallest_range=5.0)))) == ((0, 100),)
+
+
+def test_long_movements_are_told_from_short_ones():
+    edges = ((0, 49), (60, 160), (160, 260))
+    found = long_phases(samples(one_after_the_other(), edges))
+    assert found == tuple((a, b) for a, b in edges if b - a >= 2 * RATE)
+    assert 0 < len(found) < 3

@@ -170,6 +170,16 @@ def test_free_motion_is_told_and_gets_body_axes(performance):
         assert axis_errors(solved.skeleton.joint(name), true).max() < AXIS
 
 
+def test_a_hinge_less_certain_than_asked_for_has_the_body_axis(performance):
+    start = performance.calibration[1]
+    sources = {}
+    for most in (0.0, 10.0):  # deg; two halves never agree to 0
+        settings = ParameterizationSettings(axes=AxesSettings(largest_disagreement=most))
+        solved = parameterize(performance.motion, settings, calibration=(start, start + 100))
+        sources[most] = solved.skeleton.joint("left_knee").axes_source
+    assert sources == {0.0: "body", 10.0: "movement"}
+
+
 def test_free_motion_without_twist_suits_the_universal_joint(performance):
     free = slice(round(performance.calibration[1] * 25), None)
     told = performance.parameters
