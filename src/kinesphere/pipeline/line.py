@@ -3,14 +3,17 @@
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TypeAlias
 
-from kinesphere.data import Recording, Skeleton, Solution, TopologicalModel
+from kinesphere import __version__
+from kinesphere.data import Recording, Skeleton, Solution, Step, TopologicalModel
 from kinesphere.errors import BadRecording
 from kinesphere.labelling import match_labels
 from kinesphere.normalization import Facing, normalize
 from kinesphere.parameterization import parameterize
 from kinesphere.pipeline.choice import model_for
+from kinesphere.pipeline.doubts import calibration_doubts, with_checks
 from kinesphere.pipeline.settings import Settings
 from kinesphere.quality import orient
 from kinesphere.skeleton import fit_skeleton
@@ -72,17 +75,18 @@ def solve(
         chosen = model_for(recording, model, subject)
         labelled = match_labels(recording, chosen, subject)
     with clock.stage("orientation"):
-        oriented = orient(labelled, chosen, settings.orientation)
+        oriented = with_checks(orient(labelled, chosen, settings.orientation))
     with clock.stage("skeleton"):
         fitted = fit_skeleton(oriented, chosen, settings.skeleton)
     with clock.stage("normalization"):
         motion = normalize(fitted, settings.normalization, facing)
     with clock.stage("parameterization"):
+        reuse = _skeleton(calibration_from)
+        if doubts := calibration_doubts(motion, calibration, reuse):
+            step = Step("calibration", warnings=doubts, version=__version__)
+            motion = replace(motion, history=(*motion.history, step))
         parameters = parameterize(
-            motion,
-            settings.parameterization,
-            calibration=calibration,
-            reuse=_skeleton(calibration_from),
+            motion, settings.parameterization, calibration=calibration, reuse=reuse
         )
     return Solution(
         recording=oriented,

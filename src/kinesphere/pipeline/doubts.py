@@ -1,0 +1,67 @@
+"""What may spoil a solution before a stage can notice: said as a step of the history."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from kinesphere import __version__
+from kinesphere.data import Motion, Recording, Skeleton, Step
+from kinesphere.errors import BadRecording
+from kinesphere.quality import check_recording
+
+IMPOSSIBLE = (0.1, 10.0)
+"""m from feet to head: beyond, the unit is wrong and nothing else can be right."""
+OTHER_PERSON = 0.08
+"""Share by which limb lengths of one person differ between solutions, at most; 2-5 mm in 400 over
+nine trials of one person."""
+
+
+def with_checks(recording: Recording) -> Recording:
+    """Return the recording with what looks wrong in it among its warnings; gaps are no news.
+
+    Raises
+    ------
+    BadRecording
+        If the body has a size no body has.
+    """
+    found = [f for f in check_recording(recording) if f.severity != "note"]
+    low, high = IMPOSSIBLE
+    for finding in found:
+        height = dict(finding.numbers).get("height_m")
+        if finding.rule == "unit" and height is not None and not low <= height <= high:
+            raise BadRecording(f"{finding.what}: {finding.remedy}")
+    step = Step(
+        "checks",
+        findings={"found": [f.as_json() for f in found]},
+        warnings=tuple(f"{f.what}: {f.remedy}" for f in found),
+        version=__version__,
+    )
+    return replace(recording, history=(*recording.history, step))
+
+
+def calibration_doubts(
+    motion: Motion, calibration: tuple[float, float] | None, reuse: Skeleton | None
+) -> tuple[str, ...]:
+    """Return what speaks against a calibration window, or against a solution to be reused."""
+    doubts = []
+    length = motion.n_frames / motion.rate
+    if calibration is not None and (calibration[0] < 0 or calibration[1] > length):
+        start, end = calibration
+        doubts.append(
+            f"the calibration window {start:g}:{end:g} s reaches beyond the recording, "
+            f"which lasts {length:.2f} s; what there is of it was used"
+        )
+    if reuse is not None:
+        pairs = [
+            (limb.length, other.length)
+            for limb in motion.skeleton.limbs
+            for other in reuse.limbs
+            if limb.name == other.name
+        ]
+        ratios = np.array([a / b for a, b in pairs if a > 0 and b > 0])
+        if len(ratios) and (off := float(np.median(np.abs(ratios - 1)))) > OTHER_PERSON:
+            doubts.append(
+                f"limbs differ by {off:.0%} (median) from those of the solution to be reused: "
+                "axes and rest positions hold for one person only"
+            )
+    return tuple(doubts)

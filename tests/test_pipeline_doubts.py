@@ -1,0 +1,57 @@
+"""What the line says before its stages can notice that something is off."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kinesphere.errors import BadRecording
+from kinesphere.pipeline import solve
+from kinesphere.synthetic import make_performance
+
+
+@pytest.fixture(scope="module")
+def performance():
+    return make_performance(
+        np.random.default_rng(3), layout="cmu41", rate=10.0, calibration_s=20.0, free_s=2.0
+    )
+
+
+@pytest.fixture(scope="module")
+def solution(performance):
+    return solve(performance.recording)
+
+
+def scaled(recording, factor):
+    return replace(recording, markers=recording.markers * factor)
+
+
+@pytest.mark.parametrize("factor", [1e-3, 1e3])
+def test_a_body_of_impossible_size_is_a_matter_of_units(performance, factor):
+    with pytest.raises(BadRecording, match=r"feet and head are .* m apart.*length unit"):
+        solve(scaled(performance.recording, factor))
+
+
+def test_what_checks_find_is_among_the_warnings(performance, solution):
+    assert [step.name for step in solution.history].count("checks") == 1
+    markers = np.array(performance.recording.markers)
+    markers[:, 5] = markers[:, 6] + 1e-6
+    same = solve(replace(performance.recording, markers=markers))
+    labels = [performance.recording.labels[i] for i in (5, 6)]
+    assert any(all(label in warning for label in labels) for warning in same.warnings)
+
+
+def test_a_window_beyond_the_end_is_said(performance, solution):
+    assert not [w for w in solution.warnings if "window" in w]
+    beyond = solve(performance.recording, calibration=(0.0, 600.0))
+    assert any("0:600 s reaches beyond the recording, which lasts 22.00 s" in w
+               for w in beyond.warnings)  # fmt: skip
+    within = solve(performance.recording, calibration=(0.0, 22.0))
+    assert not [w for w in within.warnings if "reaches beyond" in w]
+
+
+def test_axes_of_a_body_of_another_size_are_doubted(performance, solution):
+    mine = solve(performance.recording, calibration_from=solution)
+    assert not [w for w in mine.warnings if "one person only" in w]
+    other = solve(scaled(performance.recording, 1.15), calibration_from=solution)
+    assert any("limbs differ by 15% (median)" in w for w in other.warnings)
