@@ -20,6 +20,10 @@ FIRM = 16.0
 """Information from the motion, in the expectation's units, above which a hinge is left to it."""
 FAR = 10.0
 """Spreads from the expectation beyond which an algebraic centre is no place to start from."""
+SILENT = 1e-6
+"""Share of the expectation's information left where motion is silent: a thousand spreads."""
+ROUNDING = 1e-15
+"""Share of the largest eigenvalue below which there is nothing but rounding."""
 SETTLED = 1e-6
 """m, step of the descent that ends it."""
 
@@ -101,9 +105,9 @@ def fit_centre(
     return CentreFit(
         centre=x,
         noise=_robust_noise(view, x),
-        data_covariance=np.asarray(np.linalg.inv(information + 1e-6 * prior)),
+        data_covariance=_inverse(information, prior, SILENT),
         prior=prior,
-        covariance=np.asarray(np.linalg.inv(information + prior)),
+        covariance=_inverse(information, prior, 1.0),
         n_poses=n_poses,
     )
 
@@ -119,6 +123,20 @@ def count_poses(view: View, centre: Array) -> int:
         cells = np.floor(y / (radius * CELL)).astype(np.int64)
         most = max(most, len(np.unique(cells, axis=0)))
     return most
+
+
+def _inverse(information: Array, prior: Array, share: float) -> Array:
+    """Return the inverse of ``information + share * prior``, (3, 3), however far they differ.
+
+    Motion without noise may know one direction 10¹⁶ times better than another: their sum is
+    singular in rounding, so the prior is made the unit and eigenvalues are inverted one by one.
+    """
+    values, vectors = np.linalg.eigh(prior)
+    root = (vectors / np.sqrt(values)) @ vectors.T
+    told, axes = np.linalg.eigh(root @ information @ root)
+    back = root @ axes
+    inverse: Array = (back / (np.maximum(told, 0.0) + share)) @ back.T
+    return inverse
 
 
 def _robust_noise(view: View, centre: Array) -> float:
@@ -153,7 +171,9 @@ def _descend(
             weighed = (term.jacobian * share[..., None, None]).reshape(-1, 3)
             hessian = hessian + weighed.T @ jacobian
             gradient = gradient + weighed.T @ term.residual.ravel()
-        step = -np.linalg.solve(hessian, gradient)
+        values, vectors = np.linalg.eigh(hessian)
+        # without noise one direction may weigh 10¹⁶ times another: rounding must not divide by zero
+        step = -vectors @ (vectors.T @ gradient / np.maximum(values, ROUNDING * values[2]))
         length = float(np.linalg.norm(step))
         x = x + step * min(1.0, 0.05 / max(length, 1e-12))
         if length < SETTLED:

@@ -10,6 +10,9 @@ from kinesphere.geometry.rigid import RigidFit, fit_rigid, fit_shape, into_frame
 NOISE = 0.001
 """m, least noise a point's weight reckons with: no three points take the whole fit."""
 
+STEADY = 0.05
+"""Change of a point's noise, as a share of it, below which its weight is settled."""
+
 
 @dataclass
 class Body:
@@ -94,7 +97,9 @@ def measure_shape(
         residual = np.linalg.norm(into_frame(fit.rotations, fit.shifts, points) - shape, axis=2)
         # the fit itself takes up six of the coordinates: what is left looks smaller than the noise
         if noise is None:
-            known = robust_rms(residual) * np.sqrt(3 * n / max(3 * n - 6, 1))
+            last, known = known, robust_rms(residual) * np.sqrt(3 * n / max(3 * n - 6, 1))
+            if (np.abs(known - last) < STEADY * np.hypot(known, NOISE)).all():
+                break
     assert shape is not None  # every round has found one
     return shape, known, fit
 

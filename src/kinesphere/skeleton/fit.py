@@ -65,9 +65,9 @@ def fit_skeleton(
         raise BadRecording("the recording has no frames; one at least is needed to fit a skeleton")
     tree = find_tree(recording, model)
     used = [label for limb in tree.limbs for label in tree.markers[limb]]
-    own = recording.markers[:, recording.columns(tuple(used))]
-    frames = spread_frames(own, settings.sample_frames)
-    asked, share = settings, size_share(own[frames])
+    columns = recording.columns(tuple(used))
+    frames = spread_frames(recording.markers, settings.sample_frames, columns)
+    asked, share = settings, size_share(recording.markers[frames][:, columns])
     settings = scaled(asked, share)
     markers = {label: recording.markers[:, i] for i, label in enumerate(recording.labels)}
     sample = {label: m[frames] for label, m in markers.items()}

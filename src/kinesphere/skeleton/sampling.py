@@ -1,5 +1,7 @@
 """Which frames to measure on: as many poses, and as different ones, as the time allows."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,7 +14,9 @@ BLOCK = 16384
 """Frames looked at at a time."""
 
 
-def spread_frames(markers: Array, count: int) -> NDArray[np.intp]:
+def spread_frames(
+    markers: Array, count: int, columns: Sequence[int] | None = None
+) -> NDArray[np.intp]:
     """Return frames spread evenly over the way the markers travel relative to each other.
 
     Rests are thinned, movements are not; the first and the last pose are among them.
@@ -23,6 +27,8 @@ def spread_frames(markers: Array, count: int) -> NDArray[np.intp]:
         NaN where not seen: such steps count as none.
     count
         Most frames to return.
+    columns
+        Which markers count; all where there are none given.
 
     Returns
     -------
@@ -34,6 +40,7 @@ def spread_frames(markers: Array, count: int) -> NDArray[np.intp]:
     steps = np.zeros(n_frames)
     for start in range(0, n_frames - 1, BLOCK):
         block = markers[start : start + BLOCK + 1]
+        block = block if columns is None else block[:, columns]
         steps[start + 1 : start + len(block)] = _step_lengths(block)
     way = np.cumsum(steps)
     # a little of plain time keeps a recording without motion evenly sampled
