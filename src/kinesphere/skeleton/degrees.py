@@ -9,7 +9,7 @@ ONE_AXIS_SHARE = 0.05
 """A hinge's second-widest rotation has less than this share of the widest one's variance."""
 ONE_AXIS_RATIO = 0.2
 """Least over second-least singular value of SARA's equations: below it the limbs share a line."""
-MIN_RANGE = np.deg2rad(20.0)
+MIN_RANGE = np.deg2rad(10.0)
 """rad, rms rotation about the widest axis below which nothing is said."""
 
 
@@ -33,7 +33,7 @@ def count_axes(rotations: Array) -> int | None:
         return None
     turns = rotation_log(mean_rotation(r).T @ r)
     spread = np.linalg.eigvalsh(np.cov(turns.T))[::-1]
-    if np.sqrt(spread[0]) < MIN_RANGE / 2:
+    if np.sqrt(spread[0]) < MIN_RANGE:
         return None
     lines = np.concatenate([np.broadcast_to(np.eye(3), r.shape), -r], axis=2)
     s = np.linalg.svd(lines.reshape(-1, 6), compute_uv=False)

@@ -37,6 +37,8 @@ def spread_frames(
     n_frames = len(markers)
     if n_frames <= count:
         return np.arange(n_frames)
+    if columns is not None and list(columns) == list(range(markers.shape[1])):
+        columns = None  # all of them: no copies
     steps = np.zeros(n_frames)
     for start in range(0, n_frames - 1, BLOCK):
         block = markers[start : start + BLOCK + 1]
