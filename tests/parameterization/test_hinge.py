@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 from kinesphere.geometry.rotations import rotation_about
 from kinesphere.parameterization.axes.hinge import hinge_axis
 from kinesphere.parameterization.axes.phase_log_pca import phase_log_pca
-from kinesphere.parameterization.free_hinge import free_hinge
+from kinesphere.parameterization.free_hinge import free_hinge, worse_than_body
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import AxesSettings
 
@@ -111,3 +111,11 @@ def test_the_jackknife_knows_how_uncertain_an_axis_is(rng):
         deviations.append(np.rad2deg(found.uncertainty))
     ratio = np.sqrt(np.mean(np.square(errors)) / np.mean(np.square(deviations)))
     assert 0.6 < ratio < 1.9  # 1.1 over many; four folds make a rough estimate
+
+
+def test_an_axis_that_suits_less_than_the_body_axis_is_told(rng):
+    samples, axis = hinge(rng, noise=1.0)
+    off = Rotation.from_rotvec(np.deg2rad(20.0) * LONG_AXIS).apply(axis)
+    assert worse_than_body(off, axis, samples.positions)
+    assert not worse_than_body(axis, off, samples.positions)
+    assert not worse_than_body(axis, axis, samples.positions)

@@ -80,6 +80,12 @@ def free_hinge(samples: JointSamples, body_axis: Array) -> FreeHinge | None:
     )
 
 
+def worse_than_body(axis: Array, body_axis: Array, positions: Array) -> bool:
+    """Return whether directions, (n, 3), leave the cone about an axis much more than the body's."""
+    own, body = (_out_of_cone(a, positions, positions).mean() for a in (axis, body_axis))
+    return bool(CLEARLY * own > body)
+
+
 def _folds(
     samples: JointSamples,
 ) -> list[tuple[tuple[Phase, ...], tuple[Phase, ...]]] | None:

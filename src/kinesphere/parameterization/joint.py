@@ -28,7 +28,7 @@ from kinesphere.parameterization.confidence import (
     observed_n_axes,
     reasons_to_doubt,
 )
-from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge
+from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge, worse_than_body
 from kinesphere.parameterization.main_movements import long_phases, main_movements
 from kinesphere.parameterization.rest import paper_rest, rest_target, robust_rest
 from kinesphere.parameterization.samples import JointSamples
@@ -41,7 +41,8 @@ from kinesphere.parameterization.settings import (
 from kinesphere.parameterization.view import JointView
 
 TRIAL_FRAMES = 600  # enough to tell which order of axes serves better
-LOOSE = 2.0  # times the largest disagreement of halves: an axis less certain than that is none
+LOOSE = 3.0  # times the largest disagreement of halves: an axis less certain than that is none,
+# however well it foretells; 4-22° where it does on real elbows and knees, 45° where by accident
 CLEARLY = 0.5  # another order must lower the twist at least to this share to be taken: where
 # limbs really twist, the wrong order of axes lowers it to 0.65 now and then
 
@@ -192,7 +193,14 @@ def _judged(
         quality = replace(quality, ranges=_free_ranges(view, axes))
         options = replace(options, smallest_explained=0.0)
     nominal = nominal_axes(view.name, axes) if view.human else None
-    return quality, reasons_to_doubt(quality, axes, nominal, view.samples.positions, options)
+    doubts = reasons_to_doubt(quality, axes, nominal, view.samples.positions, options)
+    if (
+        nominal is not None
+        and n_axes == 1
+        and worse_than_body(axes[0], nominal[0], view.samples.positions)
+    ):
+        doubts.append("the body frame's axis suits all the movement clearly better")
+    return quality, doubts
 
 
 def _free_hinge(view: JointView, options: AxesSettings) -> FreeHinge | None:

@@ -15,7 +15,8 @@ FLOOR = float(np.deg2rad(1e-4))  # a spread below this is rounding, not noise
 STEP = 1e-5  # rad, of the numerical derivative
 LARGEST_STEP = 0.2  # rad, of one iteration
 SETTLED = 1e-6  # rad
-FREEDOM = 10.0  # of the t distribution that errors are taken from: its tails forgive bad frames
+FREEDOM = 10.0  # of the t distribution that errors are taken from: its tails forgive bad frames,
+# and the sway about other axes, which is no outlier, still counts
 MEMORY = 0.4  # s, over which errors of markers on skin stay alike
 NORMAL_MAD = 1.4826
 TINY = 1e-9
@@ -104,7 +105,11 @@ class Cone:
 
 
 def likeliest_axis(
-    errors: ConeAndTwist, start: Array, rounds: int, cone: Cone | None = None
+    errors: ConeAndTwist,
+    start: Array,
+    rounds: int,
+    cone: Cone | None = None,
+    freedom: float = FREEDOM,
 ) -> tuple[Array, float]:
     """Return the axis, (3,), and its cost, the negative logarithm of its likelihood.
 
@@ -120,6 +125,8 @@ def likeliest_axis(
         How many steps at most.
     cone
         That all phases lie on; None gives every phase its own.
+    freedom
+        Degrees of freedom of the t distributions: fewer, heavier tails.
     """
     axis = start / np.linalg.norm(start)
     share = errors.effective / len(errors.positions)
@@ -144,7 +151,8 @@ def likeliest_axis(
             out = errors.centred(colatitude, of_cone)
         turned = errors.centred(twist, of_twist)
         spreads = _spread(out), _spread(turned)
-        of_cone, of_twist = _weights(out, spreads[0]), _weights(turned, spreads[1])
+        of_cone = _weights(out, spreads[0], freedom)
+        of_twist = _weights(turned, spreads[1], freedom)
         scales = np.sqrt(share * of_cone) / spreads[0], np.sqrt(share * of_twist) / spreads[1]
         if cone is None:
             out = errors.centred(colatitude, of_cone)
@@ -178,6 +186,6 @@ def _spread(errors: Array) -> float:
     return max(NORMAL_MAD * float(np.median(np.abs(errors))), FLOOR)
 
 
-def _weights(errors: Array, spread: float) -> Array:
+def _weights(errors: Array, spread: float, freedom: float) -> Array:
     """Return weights of a t distribution, (n,): 1 near the middle, less in the tails."""
-    return np.asarray((FREEDOM + 1) / (FREEDOM + (errors / spread) ** 2))
+    return np.asarray((freedom + 1) / (freedom + (errors / spread) ** 2))

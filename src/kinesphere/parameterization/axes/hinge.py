@@ -10,6 +10,7 @@ from kinesphere.parameterization.samples import JointSamples
 MOST_FRAMES = 400  # more change the axis by less than its uncertainty
 TRIAL_FRAMES = 80  # enough to tell starts apart
 ROUNDS = (6, 20)  # of a trial and of the last fit
+FREEDOM = 4.0  # heavy tails: a joint called a hinge leaves its cone at times
 USUAL_CONE = Cone(np.pi / 2, np.deg2rad(20.0))  # carrying angles reach 20°; without any such
 # knowledge a cluster of directions always lies on some tiny circle
 
@@ -31,7 +32,7 @@ def hinge_axis(samples: JointSamples, starts: Array) -> Array:
     centred = np.concatenate([part - part.mean(axis=0) for part in parts])
     tried = np.vstack([starts, plane_normal(centred), plane_normal(moving_positions(samples))])
     few = ConeAndTwist.of(samples, samples.phases, TRIAL_FRAMES)
-    ends = (likeliest_axis(few, start, ROUNDS[0], USUAL_CONE) for start in tried)
+    ends = (likeliest_axis(few, start, ROUNDS[0], USUAL_CONE, FREEDOM) for start in tried)
     best = min(ends, key=lambda end: end[1])[0]
     errors = ConeAndTwist.of(samples, samples.phases, MOST_FRAMES)
-    return likeliest_axis(errors, best, ROUNDS[1], USUAL_CONE)[0][None]
+    return likeliest_axis(errors, best, ROUNDS[1], USUAL_CONE, FREEDOM)[0][None]
