@@ -33,10 +33,11 @@ def test_a_body_of_impossible_size_is_a_matter_of_units(performance, factor):
 
 
 def test_what_checks_find_is_among_the_warnings(performance, solution):
-    assert [step.name for step in solution.history].count("checks") == 1
+    assert "checks" not in [step.name for step in solution.history]
     markers = np.array(performance.recording.markers)
     markers[:, 5] = markers[:, 6] + 1e-6
     same = solve(replace(performance.recording, markers=markers))
+    assert [step.name for step in same.history].count("checks") == 1
     labels = [performance.recording.labels[i] for i in (5, 6)]
     assert any(all(label in warning for label in labels) for warning in same.warnings)
 

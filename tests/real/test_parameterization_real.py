@@ -109,7 +109,9 @@ def test_no_joint_keeps_axes_that_its_halves_contradict(recordings, walk, name):
 def test_an_elbow_that_turns_the_palm_keeps_its_own_axis_with_a_warning(recordings):
     motion = motion_of(recordings / "functional" / "Test_func_trunk.c3d")
     free, body = (
-        parameterize(motion, ParameterizationSettings(axes=AxesSettings(method=method)))
+        parameterize(
+            motion, ParameterizationSettings(axes=AxesSettings(method=method, counts="elbow=1"))
+        )
         for method in ("phase-log-pca", "body")
     )
     for name in ("left_elbow", "right_elbow"):
@@ -129,3 +131,21 @@ def test_two_axes_and_a_twist_rebuild_every_pose_right_or_wrong(walk):
         assert told["twist_deviation_sum_mean_deg"] < 0.5
     rebuilt = motion_from_parameters(walk)
     assert np.isfinite(rebuilt.rotations).all()
+
+
+def test_an_elbow_that_is_no_hinge_gets_what_rebuilds_it(recordings):
+    motion = motion_of(recordings / "cmu41" / "135_02.c3d")
+    hinge = parameterize(motion, ParameterizationSettings(axes=AxesSettings(counts="elbow=1")))
+    solved = parameterize(motion)
+    for name in ("left_elbow", "right_elbow"):
+        at = solved.skeleton.joint_names.index(name)
+        assert (hinge.skeleton.joint(name).n_axes, solved.skeleton.joint(name).n_axes) == (1, 2)
+        across, flexion = np.rad2deg(solved.angles[:, at, :2]).T
+        assert np.percentile(flexion, 2) > 0
+        assert np.abs(across).max() <= 90
+        means = [np.nanmean(s.residuals[:, at]) for s in (hinge, solved)]
+        assert means[0] > 0.03  # m: no axis of a hinge carries this forearm
+        assert means[1] < 0.001
+        assert [w for w in solved.history[-1].warnings if "a second, across it" in w and name in w]
+    knees = [solved.skeleton.joint(f"{side}_knee").n_axes for side in ("left", "right")]
+    assert knees == [1, 1]

@@ -9,6 +9,7 @@ import numpy as np
 from kinesphere.data import Array, AxesSource, Json
 from kinesphere.geometry.rotations import mean_rotation, rotation_between
 from kinesphere.parameterization.anatomy import (
+    body_axes,
     declared_n_axes,
     joint_kind,
     named_axes,
@@ -32,6 +33,7 @@ from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge, worse_
 from kinesphere.parameterization.main_movements import long_phases, main_movements
 from kinesphere.parameterization.rest import paper_rest, rest_target, robust_rest
 from kinesphere.parameterization.samples import JointSamples
+from kinesphere.parameterization.second_axis import cone_spread, second_axis
 from kinesphere.parameterization.settings import (
     AngleSettings,
     AxesSettings,
@@ -63,6 +65,8 @@ class JointFit:
     """What speaks against axes from the movement, each a clause."""
     kept: str = ""
     """Why axes from the movement serve in spite of doubts, a clause; empty where they do not."""
+    added: str = ""
+    """How far one axis falls short, where a second was added; empty where none was."""
 
 
 def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
@@ -105,10 +109,17 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         axes, rest, order = _movement_rest(view, axes, quality.heights, settings)
         quality = quality.ordered(order)
         uncertainty = quality.uncertainty
+    added = ""
+    if n_axes == 1 and not _asked_for(view.name, options):
+        spread = np.rad2deg(cone_spread(view.samples.positions, axes[0]))
+        if spread > options.largest_spread and (side := body_axes(view.name)) is not None:
+            across = second_axis(axes[0], rest @ view.long_axis, side[1])
+            axes, uncertainty = np.array([across, axes[0]]), np.array([np.nan, uncertainty[0]])
+            added = f"{spread:.0f}°"
     if joint_kind(view.name) is None:
         axes = _first_excursion_positive(view, axes, rest, settings)
     findings: dict[str, Json] = {
-        "n_axes": n_axes,
+        "n_axes": len(axes),
         "n_axes_by_data": observed,
         "axes_method": options.method,
         "axes_source": source,
@@ -128,20 +139,31 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         left, body_left = np.rad2deg(free.error), np.rad2deg(free.body_error)
         findings |= {"held_out_deg": left, "held_out_body_deg": body_left}
         kept = f"{left:.1f}° instead of {body_left:.1f}°"
-    return JointFit(axes, rest, source, uncertainty, findings, tuple(doubts), kept)
+    return JointFit(axes, rest, source, uncertainty, findings, tuple(doubts), kept, added)
+
+
+def _asked_for(name: str, options: AxesSettings) -> bool:
+    """Return whether the user said how many axes a joint has."""
+    counts = parse_counts(options.counts)
+    return name in counts or (joint_kind(name) or name) in counts
 
 
 def solve_joint(
     view: JointView, axes: Array, rest: Array, settings: ParameterizationSettings
 ) -> JointAngles:
     """Return angles and twist of every frame, never smoothed."""
+    options = settings.angles
+    if len(axes) == 2 and declared_n_axes(view.name, parse_counts(settings.axes.counts)) == 1:
+        # a second axis was added to a hinge: it takes what the hinge leaves, never a half turn,
+        # and forearms twist too far for the least twist to tell the branches apart
+        options = replace(options, branch="default-sign")
     return solve_angles(
         view.rotations,
         axes,
         rest,
         view.long_axis,
         view.twist_known,
-        settings.angles,
+        options,
         settings.twist,
     )
 

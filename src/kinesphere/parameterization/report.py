@@ -45,6 +45,12 @@ def stage_warnings(
                 "no main movement tells these axes, but all movement together foretells where the "
                 f"limb goes clearly better than the body frame's axis: {', '.join(kept)}"
             )
+    added = [f"{name} ({fit.added})" for name, fit in fits.items() if fit.added]
+    if added:
+        warnings.append(
+            "one axis leaves the limb so far off that a second, across it, was added to rebuild "
+            f"its poses: {', '.join(added)}"
+        )
     no_valley = [
         name
         for name, view in views.items()

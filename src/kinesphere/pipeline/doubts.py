@@ -30,6 +30,8 @@ def with_checks(recording: Recording) -> Recording:
         height = dict(finding.numbers).get("height_m")
         if finding.rule == "unit" and height is not None and not low <= height <= high:
             raise BadRecording(f"{finding.what}: {finding.remedy}")
+    if not found:
+        return recording
     step = Step(
         "checks",
         findings={"found": [f.as_json() for f in found]},

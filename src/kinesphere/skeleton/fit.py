@@ -1,6 +1,6 @@
 """A labelled recording in, a measured skeleton and its motion out."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 import kinesphere
 from kinesphere.data import (
+    Array,
     Joint,
     Json,
     Motion,
@@ -28,6 +29,8 @@ from kinesphere.skeleton.solve import solve_poses
 from kinesphere.skeleton.tree import find_tree
 
 DEFAULT = SkeletonSettings()
+POOR = 0.03
+"""m, rms residual from which on markers are no body: soft tissue leaves 22 mm at most."""
 _A = TypeVar("_A", bound=NDArray[Any])
 
 
@@ -106,7 +109,11 @@ def fit_skeleton(
                 for joint in described.values()
             },
         },
-        warnings=(*tree.warnings, *_open_centres(described.values())),
+        warnings=(
+            *tree.warnings,
+            *_poor_fits(tree.limbs, solved.residuals, share),
+            *_open_centres(described.values()),
+        ),
         version=kinesphere.__version__,
     )
     limbs = tuple(describe_limb(bodies[limb], joints) for limb in tree.limbs)
@@ -132,6 +139,21 @@ def _given_away(array: _A) -> _A:
 def _number(value: float) -> Json:
     """Return a number as JSON holds it, to three decimals; null for NaN."""
     return round(float(value), 3) if np.isfinite(value) else None
+
+
+def _poor_fits(limbs: Sequence[str], residuals: Array, share: float) -> tuple[str, ...]:
+    """Return the warning that names the limbs whose markers do not move as one body."""
+    poor = []
+    for limb, column in zip(limbs, residuals.T, strict=True):
+        known = column[np.isfinite(column)]
+        if len(known) and (rms := float(np.sqrt(np.mean(known**2)))) > POOR * share:
+            poor.append(f"{limb} ({rms * 1e3:.0f} mm)")
+    if not poor:
+        return ()
+    return (
+        f"markers do not move as one body on {', '.join(poor)}: "
+        "they may be mislabelled, swapped, or on another limb",
+    )
 
 
 def _open_centres(joints: Iterable[Joint]) -> tuple[str, ...]:
