@@ -41,6 +41,7 @@ from kinesphere.parameterization.view import JointView, reliable_frames, view_jo
 
 TORN = 0.02  # m, joints closer together than this are never called dislocated
 OUTLYING = 6.0  # robust standard deviations
+LEAP = np.pi / 2  # rad between frames; the other branch is about half a turn of twist away
 
 
 def parameterize(
@@ -220,12 +221,28 @@ def _flags(
         edge = solved.sines < np.sin(np.deg2rad(settings.angles.singular))
     flags |= np.where(far, JointFlag.UNREACHABLE, 0)
     if len(fit.axes) > 1:
-        flags |= np.where(edge, JointFlag.SINGULAR, 0)
+        flags |= np.where(edge | leaps(solved), JointFlag.SINGULAR, 0)
     pose = motion.flags[:, limbs]
     flags |= np.where(~unseen & (pose[:, 1] == PoseFlag.TWIST_UNKNOWN), JointFlag.TWIST_UNKNOWN, 0)
     flags |= np.where(~unseen & (pose == PoseFlag.FILLED).any(axis=1), JointFlag.FILLED, 0)
     flags |= np.where(_torn(motion, j), JointFlag.DISLOCATED, 0)
     return flags.astype(np.uint8)
+
+
+def leaps(solved: JointAngles) -> Mask:
+    """Return the frames on both sides of a leap of an angle, (n_frames,).
+
+    Only near a singular pose can angles leap while the limb does not: the solution passes to its
+    other branch, between two frames if the motion is fast.
+    """
+    angles = np.column_stack([solved.angles, solved.twists])
+    with np.errstate(invalid="ignore"):
+        turned = np.abs((np.diff(angles, axis=0) + np.pi) % (2 * np.pi) - np.pi)
+        leap = (turned > LEAP).any(axis=1)
+    beside: Mask = np.zeros(len(angles), dtype=bool)
+    beside[:-1] |= leap
+    beside[1:] |= leap
+    return beside
 
 
 def _torn(motion: Motion, j: int) -> Mask:
