@@ -7,12 +7,10 @@ from itertools import pairwise
 import numpy as np
 
 from kinesphere.data import Array, AxesSource, Json
-from kinesphere.geometry.rotations import mean_rotation, rotation_between
 from kinesphere.parameterization.anatomy import (
     body_axes,
     declared_n_axes,
     joint_kind,
-    named_axes,
     nominal_axes,
     substitute_axes,
 )
@@ -31,7 +29,6 @@ from kinesphere.parameterization.confidence import (
 )
 from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge, worse_than_body
 from kinesphere.parameterization.main_movements import long_phases, main_movements
-from kinesphere.parameterization.rest import paper_rest, rest_target, robust_rest
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.second_axis import cone_spread, second_axis
 from kinesphere.parameterization.settings import (
@@ -41,12 +38,10 @@ from kinesphere.parameterization.settings import (
     parse_counts,
 )
 from kinesphere.parameterization.view import JointView
+from kinesphere.parameterization.zero import body_rest, movement_rest
 
-TRIAL_FRAMES = 600  # enough to tell which order of axes serves better
 LOOSE = 3.0  # times the largest disagreement of halves: an axis less certain than that is none,
 # however well it foretells; 4-22° where it does on real elbows and knees, 45° where by accident
-CLEARLY = 0.5  # another order must lower the twist at least to this share to be taken: where
-# limbs really twist, the wrong order of axes lowers it to 0.65 now and then
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,17 +91,17 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
     free = _free_hinge(view, options) if doubts and n_axes == 1 else None
     if free is not None:
         source: AxesSource = "movement"
-        axes, rest, _ = _movement_rest(view, free.axis[None], _height(view, free.axis), settings)
+        axes, rest, _ = movement_rest(view, free.axis[None], _height(view, free.axis), settings)
         uncertainty = np.array([free.uncertainty])
     elif len(axes) < n_axes or (doubts and options.on_doubt == "body"):
         source = "body"
         axes = substitute_axes(view.name, n_axes, view.gravity)[::-1]
-        rest = _body_rest(view, axes)
+        rest = body_rest(view, axes)
         uncertainty = np.full(n_axes, np.nan)
     else:
         assert quality is not None
         source = "movement"
-        axes, rest, order = _movement_rest(view, axes, quality.heights, settings)
+        axes, rest, order = movement_rest(view, axes, quality.heights, settings)
         quality = quality.ordered(order)
         uncertainty = quality.uncertainty
     added = ""
@@ -259,79 +254,6 @@ def _free_ranges(view: JointView, axes: Array) -> Array:
     ).angles[:, :2]
     low, high = np.percentile(angles, PERCENTILES, axis=0)
     return np.asarray(high - low)
-
-
-def _movement_rest(
-    view: JointView, found: Array, heights: Array, settings: ParameterizationSettings
-) -> tuple[Array, Array, list[int]]:
-    """Return axes distal first, the rest orientation, and where each axis stood in ``found``."""
-    axes, order = named_axes(found, view.name)
-    axes, order = axes[::-1], order[::-1]  # flexion proximal, unless another order serves better
-    if settings.axes.method == "universal-joint" and len(axes) == 2:
-        # this method knows the order, and its distal axis holds for its own reference orientation
-        axes, order = (axes, order) if order[0] == 0 else (axes[::-1], order[::-1])
-        return axes, reference_rotation(view.samples), order
-    turned = np.sign((axes * found[order]).sum(axis=1))  # a cone's height turns with its axis
-    rest = _rest(view, axes, turned * heights[order], settings)
-    if len(axes) == 2:
-        plain, other = (_order_cost(view, tried, rest, settings) for tried in (axes, axes[::-1]))
-        if other[0] < plain[0] or (other[0] == plain[0] and other[1] < CLEARLY * plain[1]):
-            axes, order = axes[::-1], order[::-1]
-    return axes, rest, order
-
-
-def _rest(
-    view: JointView, axes: Array, heights: Array, settings: ParameterizationSettings
-) -> Array:
-    anatomical = (
-        settings.rest.method == "robust"
-        and settings.rest.zero == "anatomical"
-        and joint_kind(view.name) is not None
-    )
-    zero = view.long_axis if anatomical else None
-    rotations, positions = view.samples.rotations, view.samples.positions
-    if settings.rest.method == "paper":
-        target, _ = rest_target(axes, np.zeros(len(axes)), view.gravity, None)
-        return paper_rest(rotations, positions, target)
-    target, _ = rest_target(axes, heights, view.gravity, zero)
-    slow = ~view.movement.moving[view.calibration]
-    return robust_rest(rotations, positions, slow, axes, target, settings.rest)
-
-
-def _body_rest(view: JointView, axes: Array) -> Array:
-    """Return the rest orientation that goes with axes of the body frame.
-
-    The limb aligned with its parent; a one-axis joint's is tilted onto the cone the limb really
-    moves on; a joint nobody named has no alignment, so the mean orientation serves.
-    """
-    if joint_kind(view.name) is None:
-        return mean_rotation(view.samples.rotations) if view.calibration.any() else np.eye(3)
-    if len(axes) > 1 or not view.calibration.any():
-        return np.eye(3)
-    height = float(np.median(view.samples.positions @ axes[0]))
-    target, unique = rest_target(axes, np.array([height]), view.gravity, view.long_axis)
-    return rotation_between(view.long_axis, target) if unique else np.eye(3)
-
-
-def _order_cost(
-    view: JointView, axes: Array, rest: Array, settings: ParameterizationSettings
-) -> tuple[float, float]:
-    """Return the share of unreachable frames (in whole percent) and the rms twist in rad."""
-    at = np.flatnonzero(np.isfinite(view.rotations[:, 0, 0]))
-    at = at[:: max(1, len(at) // TRIAL_FRAMES)]
-    solved = solve_angles(
-        view.rotations[at],
-        axes,
-        rest,
-        view.long_axis,
-        view.twist_known[at],
-        settings.angles,
-        replace(settings.twist, method="closed-form"),
-    )
-    unreachable = np.mean(solved.excess > np.deg2rad(settings.angles.unreachable))
-    known = np.isfinite(solved.twists)
-    twist = float(np.sqrt(np.mean(solved.twists[known] ** 2))) if known.any() else 0.0
-    return round(float(unreachable), 2), twist
 
 
 def _first_excursion_positive(
