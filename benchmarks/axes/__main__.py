@@ -10,7 +10,16 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmarks.axes import angles, estimators, filters, floor, normalization, solved, times
+from benchmarks.axes import (
+    angles,
+    estimators,
+    filters,
+    floor,
+    free_motion,
+    normalization,
+    solved,
+    times,
+)
 from benchmarks.axes.page import all_bars, page
 from kinesphere import __version__
 
@@ -85,9 +94,7 @@ def measure(run: Run, data: Path) -> dict[str, Any]:
             run("twist", angles.run_twist, angles.TWIST_TASKS),
         ),
         "axes": estimators.summary(run("axes", estimators.run, estimators.TASKS)),
-        "free": estimators.summary_free(
-            run("free motion", estimators.run_free, estimators.FREE_TASKS)
-        ),
+        "free": free_motion.summary(run("free motion", free_motion.run, free_motion.TASKS)),
         "floor": floor.summary(run("floor of free motion", floor.run, floor.TASKS)),
     }
 

@@ -5,9 +5,11 @@ from typing import Any
 import numpy as np
 from scipy.optimize import least_squares
 
-from benchmarks.axes.estimators import FREE_NOISES, FREE_TWISTS, cell
-from benchmarks.axes.generator import CONES, NOISES, Array, TrueJoint, make_free_motion
+from benchmarks.axes.estimators import cell
+from benchmarks.axes.free_motion import ALL_NOISES, MOTIONS, make
+from benchmarks.axes.generator import Array, TrueJoint
 from benchmarks.axes.measures import line_angles, wrapped
+from kinesphere.geometry.rotations import tangent_basis
 from kinesphere.parameterization import AngleSettings
 from kinesphere.parameterization.angles import two_axis_angles
 
@@ -26,10 +28,10 @@ def least_twist(joint: TrueJoint) -> Array:
     """
     rotations = joint.rotations[::THINNED]
     known = np.ones(len(rotations), dtype=bool)
-    bases = [_tangent(axis) for axis in joint.axes]
+    bases = [tangent_basis(axis) for axis in joint.axes]
 
     def axes_at(steps: Array) -> Array:
-        moved = [a + b @ s for a, b, s in zip(joint.axes, bases, steps.reshape(2, 2), strict=True)]
+        moved = [a + s @ b for a, b, s in zip(joint.axes, bases, steps.reshape(2, 2), strict=True)]
         return np.array([axis / np.linalg.norm(axis) for axis in moved])
 
     def residuals(steps: Array) -> Array:
@@ -43,35 +45,27 @@ def least_twist(joint: TrueJoint) -> Array:
     return axes_at(found.x)
 
 
-def run(noise: str, twist: str, seed: int) -> list[float]:
+def run(motion: str, noise: str, seed: int) -> list[float]:
     """Return the errors of both axes in deg."""
-    joint = make_free_motion(
-        np.random.default_rng(seed), CONES["60–120°"], NOISES[noise], twist=FREE_TWISTS[twist]
-    )
+    joint = make(motion, noise, seed)
     return [float(e) for e in line_angles(least_twist(joint), joint.axes)]
 
 
 TASKS = [
-    (noise, twist, 3000 + seed)
-    for twist in FREE_TWISTS
-    for noise in FREE_NOISES
+    (motion, noise, 3000 + seed)
+    for motion, free in MOTIONS.items()
+    if free.noises == ALL_NOISES
+    for noise in free.noises
     for seed in range(SEEDS)
 ]
 
 
 def summary(results: list[list[float]]) -> dict[str, Any]:
-    """Return twist → noise → statistics."""
+    """Return motion → noise → statistics."""
     table: dict[str, Any] = {}
-    for (noise, twist, _), errors in zip(TASKS, results, strict=True):
-        table.setdefault(twist, {}).setdefault(noise, []).append(errors)
+    for (motion, noise, _), errors in zip(TASKS, results, strict=True):
+        table.setdefault(motion, {}).setdefault(noise, []).append(errors)
     return {
-        twist: {noise: cell(errors) for noise, errors in row.items()}
-        for twist, row in table.items()
+        motion: {noise: cell(errors) for noise, errors in row.items()}
+        for motion, row in table.items()
     }
-
-
-def _tangent(axis: Array) -> Array:
-    """Return two unit vectors perpendicular to an axis and each other, (3, 2)."""
-    first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-    first /= np.linalg.norm(first)
-    return np.stack([first, np.cross(axis, first)], axis=1)

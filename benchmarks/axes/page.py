@@ -7,6 +7,7 @@ from benchmarks.axes import (
     angles,
     estimators,
     filters,
+    free_motion,
     normalization,
     papers_metrics,
     repeatability,
@@ -34,7 +35,8 @@ def all_bars(found: dict[str, Any]) -> list[Bar]:
     """Return every figure that is held to a number."""
     return [
         *filters.bars(found["filter"]),
-        *estimators.bars(found["axes"], found["free"]),
+        *estimators.bars(found["axes"]),
+        *free_motion.bars(found["free"]),
         *angles.bars(found["angles"]),
         *normalization.bars(found["normalization"]),
         *papers_metrics.bars(found["paper"]),
@@ -49,7 +51,8 @@ def page(found: dict[str, Any]) -> str:
             INTRODUCTION,
             scoreboard(all_bars(found)),
             filters.page(found["filter"]),
-            estimators.page(found["axes"], found["free"], found["floor"]),
+            estimators.page(found["axes"]),
+            free_motion.page(found["free"], found["floor"]),
             angles.page(found["angles"]),
             normalization.page(found["normalization"]),
             papers_metrics.page(found["paper"], found["skipped"]),

@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 from benchmarks.axes import __main__ as main
-from benchmarks.axes import floor
+from benchmarks.axes import floor, free_motion
 from benchmarks.axes.angles import run_cross_talk
-from benchmarks.axes.estimators import run, run_free
+from benchmarks.axes.estimators import run
 from benchmarks.axes.normalization import POSES, PROTOCOLS, RULES, Protocol, record
 from benchmarks.axes.papers_metrics import joint_rows, measured_rows, pooled, with_random_axes
 from benchmarks.axes.repeatability import (
@@ -170,7 +170,7 @@ def test_every_estimator_answers():
     errors = run("90°", "clean", 1000)
     assert errors["as delivered"] == pytest.approx(errors["phase-log-pca"], abs=0.3)
     assert max(errors["as delivered"]) < 1.0
-    assert max(run_free("clean", "without twist", 3000)["universal-joint"]) < 0.1
+    assert max(free_motion.run("20 s without twist", "clean", 3000)["universal-joint"]) < 0.1
 
 
 def test_cross_talk_of_true_axes_is_the_noise():
@@ -180,8 +180,9 @@ def test_cross_talk_of_true_axes_is_the_noise():
 
 
 def test_without_twist_and_noise_least_twist_is_the_truth():
-    assert max(floor.run("clean", "without twist", 3000)) < 1e-4
-    assert max(floor.run("clean", "±10° of twist", 3000)) > 0.1  # chance twist pulls them away
+    assert max(floor.run("20 s without twist", "clean", 3000)) < 1e-4
+    twisted = floor.run("20 s, ±10° of twist", "clean", 3000)
+    assert max(twisted) > 0.1  # chance twist pulls them away
 
 
 def test_figures_survive_the_file():

@@ -174,7 +174,7 @@ def test_a_hinge_less_certain_than_asked_for_has_the_body_axis(performance):
     start = performance.calibration[1]
     sources = {}
     for most in (0.0, 10.0):  # deg; two halves never agree to 0
-        settings = ParameterizationSettings(axes=AxesSettings(largest_disagreement=most))
+        settings = ParameterizationSettings(axes=AxesSettings(largest_uncertainty=most))
         solved = parameterize(performance.motion, settings, calibration=(start, start + 100))
         sources[most] = solved.skeleton.joint("left_knee").axes_source
     assert sources == {0.0: "body", 10.0: "movement"}

@@ -23,6 +23,13 @@ def rotation_about(axis: Array, angles: Array) -> Array:
     return turned
 
 
+def tangent_basis(axis: Array) -> Array:
+    """Return two unit vectors perpendicular to a unit vector, (3,), and to each other, (2, 3)."""
+    first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(axis, first)])
+
+
 def rotation_between(source: Array, target: Array) -> Array:
     """Return the least rotation that takes one unit vector to the other, (..., 3) → (..., 3, 3).
 

@@ -14,6 +14,7 @@ Finder = Callable[[JointSamples], Array]
 """Samples → (n_found, 3) axes: an axis method with its settings bound."""
 
 LEAST_SHARE = 0.2  # of an axis' frames in each half of the recording, for the halves to be compared
+SHORTEST = 4  # frames of a phase that a cut may leave
 PERCENTILES = (5.0, 95.0)  # a range of motion leaves the extremes out
 
 
@@ -69,7 +70,20 @@ def assess_axes(samples: JointSamples, axes: Array, find: Finder) -> AxesQuality
         total += float((swing.vectors**2).sum())
         pooled[labels[i]] += swing.vectors.T @ swing.vectors
     values = np.linalg.eigvalsh(pooled)
-    ranges, heights = np.zeros(n_axes), np.full(n_axes, np.nan)
+    ranges, heights = _arcs(samples, axes, labels)
+    return AxesQuality(
+        labels=labels,
+        ranges=ranges,
+        conditioning=values[:, 2] / np.maximum(values[:, 1], 1e-12),
+        explained=explained / max(total, 1e-300),
+        halves=halves_disagreement(samples, axes, labels, find),
+        heights=heights,
+    )
+
+
+def _arcs(samples: JointSamples, axes: Array, labels: Labels) -> tuple[Array, Array]:
+    """Return the arc in rad and the cosine of the cone about each axis, (n_axes,) twice."""
+    ranges, heights = np.zeros(len(axes)), np.full(len(axes), np.nan)
     for k, axis in enumerate(axes):
         mine = [samples.positions[a:b] for (a, b), at in _zip(samples, labels) if at == k]
         if mine:
@@ -82,14 +96,49 @@ def assess_axes(samples: JointSamples, axes: Array, find: Finder) -> AxesQuality
             # as an arc on the joint sphere: a full turn on a tiny circle is no movement
             arc = np.sqrt(max(0.0, 1 - heights[k] ** 2))
             ranges[k] = arc * float(np.diff(np.percentile(azimuth, PERCENTILES))[0])
-    return AxesQuality(
-        labels=labels,
-        ranges=ranges,
-        conditioning=values[:, 2] / np.maximum(values[:, 1], 1e-12),
-        explained=explained / total if total > 0 else 0.0,
-        halves=halves_disagreement(samples, axes, labels, find),
-        heights=heights,
-    )
+    return ranges, heights
+
+
+def contradiction(
+    everything: JointSamples, used: JointSamples, axes: Array, labels: Labels, find: Finder
+) -> Array:
+    """Return the angle between axes searched anew in each half of the time, (n_axes,) rad.
+
+    As if each half were a recording of its own. NaN for an axis that moves almost in one half
+    alone: the other contradicts nothing.
+
+    Parameters
+    ----------
+    everything
+        With all phases of the calibration.
+    used
+        With the phases that the axes come from.
+    axes : (n_axes, 3)
+    labels : (n_phases,)
+        Which axis each phase of ``used`` moves about.
+    find
+        Samples → axes.
+    """
+    n, middle = len(everything.positions), len(everything.positions) // 2
+    told = _matched(np.empty((0, 3)), axes)
+    both = []
+    for low, high in ((0, middle), (middle, n)):
+        clipped = ((max(a, low), min(b, high)) for a, b in everything.phases)
+        half = everything.with_phases(tuple((a, b) for a, b in clipped if b - a > SHORTEST))
+        both.append(_matched(find(half), axes) if half.phases else told)
+    cosines = np.abs((both[0] * both[1]).sum(axis=1))
+    sines = np.linalg.norm(np.cross(both[0], both[1]), axis=1)
+    shared = np.abs(_early_share(used, labels, len(axes), middle) - 0.5) <= 0.5 - LEAST_SHARE
+    return np.asarray(np.where(shared, np.arctan2(sines, cosines), np.nan))
+
+
+def _early_share(samples: JointSamples, labels: Labels, n_axes: int, cut: int) -> Array:
+    """Return the share of each axis' moving frames that lies before a frame, (n_axes,)."""
+    early, length = np.zeros(n_axes), np.zeros(n_axes)
+    for (a, b), label in _zip(samples, labels):
+        early[label] += max(0, min(b, cut) - a)
+        length[label] += b - a
+    return np.asarray(early / np.maximum(length, 1))
 
 
 def halves_disagreement(samples: JointSamples, axes: Array, labels: Labels, find: Finder) -> Array:
@@ -132,8 +181,8 @@ def reasons_to_doubt(
         )
     if not np.isfinite(quality.halves).all():
         doubts.append("there is too little movement to compare two halves of it")
-    elif (apart := np.rad2deg(quality.halves.max())) > s.largest_disagreement:
-        doubts.append(f"axes from two halves of the data differ by {apart:.0f}°")
+    elif np.rad2deg(quality.uncertainty.max()) > s.largest_uncertainty:
+        doubts.append(apart(quality.halves))
     if len(axes) > 1 and quality.explained < s.smallest_explained:
         doubts.append(
             f"rotation about one axis at a time explains only {quality.explained:.0%} "
@@ -154,6 +203,11 @@ def reasons_to_doubt(
             if angle < s.smallest_angle:
                 doubts.append(f"two axes are {angle:.0f}° apart, too close to be two")
     return doubts
+
+
+def apart(halves: Array) -> str:
+    """Return how far axes from two halves differ, (n_axes,) rad, as a clause."""
+    return f"axes from two halves of the data differ by {np.rad2deg(halves.max()):.0f}°"
 
 
 def observed_n_axes(samples: JointSamples) -> int | None:
@@ -197,14 +251,9 @@ def _splits(
         splits.append((tuple(dealt[0]), tuple(dealt[1])))
     frames = np.concatenate([np.arange(a, b) for a, b in phases])
     cut = int(np.median(frames))
-    early = tuple((a, min(b, cut)) for a, b in phases if a < cut - 4)
-    late = tuple((max(a, cut), b) for a, b in phases if b > cut + 4)
-    early_share = np.zeros(n_axes)
-    length = np.zeros(n_axes)
-    for (a, b), label in _zip(samples, labels):
-        early_share[label] += max(0, min(b, cut) - a)
-        length[label] += b - a
-    share = early_share / np.maximum(length, 1)
+    early = tuple((a, min(b, cut)) for a, b in phases if a < cut - SHORTEST)
+    late = tuple((max(a, cut), b) for a, b in phases if b > cut + SHORTEST)
+    share = _early_share(samples, labels, n_axes, cut)
     if (np.abs(share - 0.5) <= 0.5 - LEAST_SHARE).all():
         splits.append((early, late))
     return splits

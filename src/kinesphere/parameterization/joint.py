@@ -11,36 +11,25 @@ from kinesphere.parameterization.anatomy import (
     body_axes,
     declared_n_axes,
     joint_kind,
-    nominal_axes,
     substitute_axes,
 )
-from kinesphere.parameterization.angles import JointAngles, solve_angles, two_axis_angles
-from kinesphere.parameterization.axes import find_axes
+from kinesphere.parameterization.angles import JointAngles, solve_angles
 from kinesphere.parameterization.axes.fit import moving_positions
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
-from kinesphere.parameterization.axes.universal_joint import reference_rotation
-from kinesphere.parameterization.confidence import (
-    PERCENTILES,
-    AxesQuality,
-    Finder,
-    assess_axes,
-    observed_n_axes,
-    reasons_to_doubt,
-)
-from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge, worse_than_body
-from kinesphere.parameterization.main_movements import long_phases, main_movements
-from kinesphere.parameterization.samples import JointSamples
+from kinesphere.parameterization.confidence import AxesQuality, apart, observed_n_axes
+from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge
+from kinesphere.parameterization.movement_axes import movement_axes
 from kinesphere.parameterization.second_axis import cone_spread, second_axis
 from kinesphere.parameterization.settings import (
-    AngleSettings,
     AxesSettings,
     ParameterizationSettings,
     parse_counts,
 )
 from kinesphere.parameterization.view import JointView
-from kinesphere.parameterization.zero import body_rest, movement_rest
+from kinesphere.parameterization.zero import body_rest, movement_rest, reach_and_twist
 
-LOOSE = 3.0  # times the largest disagreement of halves: an axis less certain than that is none,
+OUT_OF_REACH = 0.05  # of the frames; about axes a person has, the limb goes wherever it goes
+LOOSE = 3.0  # times the largest uncertainty: an axis of free motion less certain is none,
 # however well it foretells; 4-22° where it does on real elbows and knees, 45° where by accident
 
 
@@ -62,6 +51,8 @@ class JointFit:
     """Why axes from the movement serve in spite of doubts, a clause; empty where they do not."""
     added: str = ""
     """How far one axis falls short, where a second was added; empty where none was."""
+    loose: str = ""
+    """How far halves of the movement contradict each other where its axes still serve."""
 
 
 def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
@@ -86,24 +77,31 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
     observed = observed_n_axes(view.samples)
     declared = declared_n_axes(view.name, parse_counts(options.counts))
     n_axes = declared or observed or 2
+    keep = options.on_doubt == "movement"
 
-    axes, quality, doubts = _movement_axes(view, n_axes, options)
+    found = movement_axes(view, n_axes, options)
+    axes, quality, doubts = found.axes, found.quality, list(found.doubts)
     free = _free_hinge(view, options) if doubts and n_axes == 1 else None
+    source: AxesSource = "movement"
+    loose = ""
     if free is not None:
-        source: AxesSource = "movement"
         axes, rest, _ = movement_rest(view, free.axis[None], _height(view, free.axis), settings)
         uncertainty = np.array([free.uncertainty])
-    elif len(axes) < n_axes or (doubts and options.on_doubt == "body"):
+    elif quality is not None and len(axes) == n_axes and (not doubts or keep):
+        axes, rest, order = movement_rest(view, axes, quality.heights, settings)
+        quality = quality.ordered(order)
+        uncertainty = quality.uncertainty
+        if n_axes == 2:
+            share, _ = reach_and_twist(view, axes, rest, settings)
+            if share > OUT_OF_REACH:
+                doubts.append(f"the limb is out of these axes' reach in {share:.0%} of the frames")
+        if not doubts and np.rad2deg(quality.halves.max()) > options.largest_disagreement:
+            loose = apart(quality.halves)
+    if free is None and (len(axes) < n_axes or (doubts and not keep)):
         source = "body"
         axes = substitute_axes(view.name, n_axes, view.gravity)[::-1]
         rest = body_rest(view, axes)
         uncertainty = np.full(n_axes, np.nan)
-    else:
-        assert quality is not None
-        source = "movement"
-        axes, rest, order = movement_rest(view, axes, quality.heights, settings)
-        quality = quality.ordered(order)
-        uncertainty = quality.uncertainty
     added = ""
     if n_axes == 1 and not _asked_for(view.name, options):
         spread = np.rad2deg(cone_spread(view.samples.positions, axes[0]))
@@ -118,7 +116,7 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         "n_axes_by_data": observed,
         "axes_method": options.method,
         "axes_source": source,
-        "doubts": list(doubts),
+        "doubts": [*doubts, loose] if loose else list(doubts),
         "phases_s": [list(span) for span in view.samples.phase_times],
         "reliable_s": float(view.calibration.sum() / view.samples.rate),
         "axes_uncertainty_deg": [
@@ -134,7 +132,7 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         left, body_left = np.rad2deg(free.error), np.rad2deg(free.body_error)
         findings |= {"held_out_deg": left, "held_out_body_deg": body_left}
         kept = f"{left:.1f}° instead of {body_left:.1f}°"
-    return JointFit(axes, rest, source, uncertainty, findings, tuple(doubts), kept, added)
+    return JointFit(axes, rest, source, uncertainty, findings, tuple(doubts), kept, added, loose)
 
 
 def _asked_for(name: str, options: AxesSettings) -> bool:
@@ -163,63 +161,6 @@ def solve_joint(
     )
 
 
-def _movement_axes(
-    view: JointView, n_axes: int, options: AxesSettings
-) -> tuple[Array, AxesQuality | None, list[str]]:
-    """Return axes from the movement, how good they are, and what speaks against them."""
-    if options.method == "body":
-        return np.empty((0, 3)), None, []
-
-    def find(half: JointSamples) -> Array:
-        return find_axes(half, n_axes, options)
-
-    free = options.method == "universal-joint" and n_axes == 2  # needs no main movements
-    for phases in (view.samples.phases,) if free else main_movements(view.samples, options):
-        samples = view.samples.with_phases(phases)
-        axes = find(samples)
-        if len(axes) == n_axes:
-            break
-    if len(axes) == 0:
-        unseen = not view.calibration.any()
-        return axes, None, ["it is never seen" if unseen else "the limb hardly moves"]
-    quality, doubts = _judged(view, samples, axes, n_axes, find, options)
-    long = long_phases(samples)
-    if doubts and not free and 0 < len(long) < len(samples.phases):
-        calmer = samples.with_phases(long)
-        again = find(calmer)
-        if len(again) == n_axes:
-            second = _judged(view, calmer, again, n_axes, find, options)
-            if not second[1]:
-                return again, *second
-    return axes, quality, doubts
-
-
-def _judged(
-    view: JointView,
-    samples: JointSamples,
-    axes: Array,
-    n_axes: int,
-    find: Finder,
-    options: AxesSettings,
-) -> tuple[AxesQuality, list[str]]:
-    """Return how good axes from some phases are, and what speaks against them."""
-    quality = assess_axes(samples, axes, find)
-    if len(axes) < n_axes:
-        return quality, [f"only {len(axes)} of {n_axes} main movements is there"]
-    if options.method == "universal-joint" and n_axes == 2:
-        quality = replace(quality, ranges=_free_ranges(view, axes))
-        options = replace(options, smallest_explained=0.0)
-    nominal = nominal_axes(view.name, axes) if view.human else None
-    doubts = reasons_to_doubt(quality, axes, nominal, view.samples.positions, options)
-    if (
-        nominal is not None
-        and n_axes == 1
-        and worse_than_body(axes[0], nominal[0], view.samples.positions)
-    ):
-        doubts.append("the body frame's axis suits all the movement clearly better")
-    return quality, doubts
-
-
 def _free_hinge(view: JointView, options: AxesSettings) -> FreeHinge | None:
     """Return the axis of a hinge in free motion; None where it is not clearly worth having."""
     if options.method not in BY_ORIENTATION or options.on_doubt != "body":
@@ -230,7 +171,7 @@ def _free_hinge(view: JointView, options: AxesSettings) -> FreeHinge | None:
         return None
     far = np.arccos(min(1.0, abs(float(found.axis @ body_axis)))) > np.deg2rad(options.farthest)
     small = found.moved < np.deg2rad(options.smallest_range)
-    loose = found.uncertainty > np.deg2rad(LOOSE * options.largest_disagreement)
+    loose = found.uncertainty > np.deg2rad(LOOSE * options.largest_uncertainty)
     anatomical = view.human and joint_kind(view.name) is not None
     return None if small or loose or (far and anatomical) else found
 
@@ -239,21 +180,6 @@ def _height(view: JointView, axis: Array) -> Array:
     """Return the cosine of the cone on which a hinge moves, (1,)."""
     moving = moving_positions(view.samples)
     return np.array([float(np.median(moving @ axis))])
-
-
-def _free_ranges(view: JointView, axes: Array) -> Array:
-    """Return the ranges of both angles of a joint that moves about its axes at once, (2,) rad."""
-    at = view.calibration
-    angles = two_axis_angles(
-        view.samples.rotations,
-        axes,
-        reference_rotation(view.samples),
-        view.long_axis,
-        view.twist_known[at],
-        AngleSettings(),
-    ).angles[:, :2]
-    low, high = np.percentile(angles, PERCENTILES, axis=0)
-    return np.asarray(high - low)
 
 
 def _first_excursion_positive(

@@ -45,6 +45,12 @@ def stage_warnings(
                 "no main movement tells these axes, but all movement together foretells where the "
                 f"limb goes clearly better than the body frame's axis: {', '.join(kept)}"
             )
+        loose = [f"{name} ({fit.loose})" for name, fit in fits.items() if fit.loose]
+        if loose:
+            warnings.append(
+                "these axes are known to a few degrees only, yet the body frame's would be no "
+                f"better: {', '.join(loose)}"
+            )
     added = [f"{name} ({fit.added})" for name, fit in fits.items() if fit.added]
     if added:
         warnings.append(

@@ -31,6 +31,8 @@ class JointSamples:
     """(3,) unit vector in the child."""
     frames: Frames | None = None
     """(n_frames,) which frames of the recording these are; None for its first ones in a row."""
+    measured: Array | None = None
+    """(n_frames, 3, 3) the rotations before they were smoothed; None where nobody did."""
 
     @property
     def phase_times(self) -> tuple[tuple[float, float], ...]:

@@ -116,10 +116,18 @@ class AxesSettings:
     )
     largest_disagreement: float = setting(
         10.0,
-        "angle between axes from two halves of the data, from which on they are doubted",
+        "angle between axes from two halves of the data, from which on that is said",
         unit="deg",
         low=0.0,
         high=90.0,
+    )
+    largest_uncertainty: float = setting(
+        10.0,
+        "standard deviation of an axis, half of that angle, from which on the body's axis serves",
+        unit="deg",
+        low=0.0,
+        high=45.0,
+        source="the body frame's axes are themselves 5-12 deg off at knees",
     )
     smallest_range: float = setting(
         12.0,

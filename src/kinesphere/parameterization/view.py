@@ -93,5 +93,7 @@ def view_joint(
         for a, b in np.searchsorted(frames, np.reshape(runs(movement.moving), (-1, 2)))
         if b > a
     )
-    samples = JointSamples(smooth, smooth @ long_axis, phases, rate, long_axis, frames)
+    samples = JointSamples(
+        smooth, smooth @ long_axis, phases, rate, long_axis, frames, rotations[frames]
+    )
     return JointView(name, rotations, long_axis, twist_known, samples, movement, chosen, human)

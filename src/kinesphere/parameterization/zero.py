@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.geometry.rotations import mean_rotation, rotation_between
+from kinesphere.geometry.rotations import mean_rotation, rotation_about, rotation_between
 from kinesphere.parameterization.anatomy import joint_kind, named_axes
-from kinesphere.parameterization.angles import solve_angles
+from kinesphere.parameterization.angles import solve_angles, two_axis_angles
 from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.rest import paper_rest, rest_target, robust_rest
 from kinesphere.parameterization.settings import ParameterizationSettings
@@ -48,14 +48,35 @@ def movement_rest(
     if settings.axes.method == "universal-joint" and len(axes) == 2:
         # this method knows the order, and its distal axis holds for its own reference orientation
         axes, order = (axes, order) if order[0] == 0 else (axes[::-1], order[::-1])
-        return axes, reference_rotation(view.samples), order
+        return axes, _usual_twist(view, axes, settings), order
     turned = np.sign((axes * found[order]).sum(axis=1))  # a cone's height turns with its axis
     rest = _rest(view, axes, turned * heights[order], settings)
     if len(axes) == 2:
-        plain, other = (_order_cost(view, tried, rest, settings) for tried in (axes, axes[::-1]))
+        plain, other = (
+            reach_and_twist(view, tried, rest, settings) for tried in (axes, axes[::-1])
+        )
         if other[0] < plain[0] or (other[0] == plain[0] and other[1] < CLEARLY * plain[1]):
             axes, order = axes[::-1], order[::-1]
     return axes, rest, order
+
+
+def _usual_twist(view: JointView, axes: Array, settings: ParameterizationSettings) -> Array:
+    """Return the reference orientation, (3, 3), turned about the limb to its usual twist."""
+    reference = reference_rotation(view.samples)
+    solved = two_axis_angles(
+        view.samples.rotations,
+        axes,
+        reference,
+        view.long_axis,
+        view.twist_known[view.calibration],
+        settings.angles,
+    )
+    known = solved.twists[solved.sines > np.sin(np.deg2rad(settings.angles.singular))]
+    if len(known) == 0:
+        return reference
+    usual = float(np.angle(np.exp(1j * known).mean()))
+    turned: Array = rotation_about(reference @ view.long_axis, np.array([usual]))[0] @ reference
+    return turned
 
 
 def _rest(
@@ -91,10 +112,10 @@ def body_rest(view: JointView, axes: Array) -> Array:
     return rotation_between(view.long_axis, target) if unique else np.eye(3)
 
 
-def _order_cost(
+def reach_and_twist(
     view: JointView, axes: Array, rest: Array, settings: ParameterizationSettings
 ) -> tuple[float, float]:
-    """Return the share of unreachable frames (in whole percent) and the rms twist in rad."""
+    """Return the share of frames out of reach (in whole percent) and the rms twist in rad."""
     at = np.flatnonzero(np.isfinite(view.rotations[:, 0, 0]))
     at = at[:: max(1, len(at) // TRIAL_FRAMES)]
     solved = solve_angles(

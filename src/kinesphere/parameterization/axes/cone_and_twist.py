@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array
-from kinesphere.geometry.rotations import mean_rotation
+from kinesphere.geometry.rotations import mean_rotation, tangent_basis
 from kinesphere.parameterization.samples import JointSamples, Phase
 
 FLOOR = float(np.deg2rad(1e-4))  # a spread below this is rounding, not noise
@@ -135,9 +135,7 @@ def likeliest_axis(
     opening = np.nan
     cost = np.inf
     for _ in range(rounds):
-        first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-        first /= np.linalg.norm(first)
-        basis = np.stack([first, np.cross(axis, first)])
+        basis = tangent_basis(axis)
         near = np.vstack([axis, axis + STEP * basis])
         near /= np.linalg.norm(near, axis=1)[:, None]
         colatitudes, twists = errors.errors(near)

@@ -6,7 +6,8 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from kinesphere.data import Array
-from kinesphere.geometry.rotations import mean_rotation, rotation_angle
+from kinesphere.geometry.rotations import mean_rotation, rotation_angle, tangent_basis
+from kinesphere.parameterization.axes.free_motion import FreeMotion, likeliest_axes
 from kinesphere.parameterization.axes.phase_log_pca import phase_log_pca
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import AxesSettings
@@ -15,6 +16,11 @@ MOST_SAMPLES = 600  # evenly taken; more change nothing but the time
 SCALE = 0.05  # rad, where the robust loss turns from square to linear
 TWIST_SHARE = 0.9  # of a residual's variance that is put down to twist about the limb
 NEAREST = 15  # samples that make the reference orientation
+ENDS = 6  # of the descents from different starts, that are looked at more closely
+SAME = np.cos(np.deg2rad(10.0))
+SHORTEST = 15.0  # s of movement; less shows too little of what angles are like in time
+Fit = tuple[Array, Array, float]
+"""Proximal axis in the parent, distal axis in the child, cost."""
 
 
 def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) -> Array:
@@ -22,8 +28,10 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
 
     Such a joint keeps ``xᵀ Q y = cos γ`` in every pose, with x the proximal axis in the parent and
     y the distal axis in the child. Sampson's residual of that constraint is minimized robustly
-    from several starts. Twist about the limb is not part of the joint: it acts as noise of its
-    own direction, and much of it spoils the axes. One-axis joints are left to the phase method.
+    from several starts. Twist about the limb is not part of such a joint: it acts as noise of its
+    own direction, and much of it spoils the axes. The best few ends are therefore starts of
+    `likeliest_axes`, which takes the twist as what it is, unless ``refine`` is off or the
+    movement too short. One-axis joints are left to the phase method.
 
     Returns
     -------
@@ -33,7 +41,8 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
     """
     if n_axes != 2 or not samples.phases:
         return phase_log_pca(samples, n_axes, settings)
-    q = np.concatenate([samples.rotations[a:b] for a, b in samples.phases])
+    moving = np.concatenate([np.arange(a, b) for a, b in samples.phases])
+    q = samples.rotations[moving]
     q = q[:: max(1, len(q) // MOST_SAMPLES)]
     if len(q) < 6:
         return np.empty((0, 3))
@@ -41,12 +50,28 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
     short = q[:: max(1, len(q) // 80)]
     starts = product(np.eye(3), repeat=2)
     tried = (_solve(short, x, reference.T @ a1, samples.long_axis, 12) for x, a1 in starts)
-    found = [fit for fit in tried if fit is not None]
-    if not found:
+    found = sorted((fit for fit in tried if fit is not None), key=lambda fit: fit[2])
+    ends = (_solve(q, x, y, samples.long_axis, 60) for x, y, _ in _distinct(found))
+    axes = [np.stack([reference @ fit[1], fit[0]]) for fit in ends if fit is not None]
+    if not axes:
         return np.empty((0, 3))
-    x, y, _ = min(found, key=lambda fit: fit[2])
-    fit = _solve(q, x, y, samples.long_axis, 60)
-    return np.empty((0, 3)) if fit is None else np.stack([reference @ fit[1], fit[0]])
+    if not settings.refine or len(moving) < SHORTEST * samples.rate:
+        return axes[0]
+    at = moving if samples.frames is None else samples.frames[moving]
+    # smoothing would hide from the likelihood what the errors of the poses are like
+    measured = samples.rotations if samples.measured is None else samples.measured
+    motion = FreeMotion(measured[moving], at / samples.rate, samples.long_axis, reference)
+    return likeliest_axes(motion, axes)
+
+
+def _distinct(fits: list[Fit]) -> list[Fit]:
+    """Return the first few fits that differ by their axes."""
+    kept: list[Fit] = []
+    for fit in fits:
+        alike = (abs(fit[0] @ k[0]) > SAME and abs(fit[1] @ k[1]) > SAME for k in kept)
+        if len(kept) < ENDS and not any(alike):
+            kept.append(fit)
+    return kept
 
 
 def reference_rotation(samples: JointSamples) -> Array:
@@ -57,18 +82,16 @@ def reference_rotation(samples: JointSamples) -> Array:
     return mean_rotation(known[np.argsort(apart, kind="stable")[:NEAREST]])
 
 
-def _solve(
-    q: Array, x0: Array, y0: Array, long_axis: Array, steps: int
-) -> tuple[Array, Array, float] | None:
+def _solve(q: Array, x0: Array, y0: Array, long_axis: Array, steps: int) -> Fit | None:
     """Return x, y and the cost from one start; None if the axes became parallel.
 
     A residual's variance is that of noise about any axis, ``‖x × Q y‖²``, and of twist about the
     limb u, ``(x · Q (u × y))²``: frames that see little twist count more.
     """
-    bases = _tangent(x0), _tangent(y0)
+    bases = tangent_basis(x0), tangent_basis(y0)
 
     def split(v: Array) -> tuple[Array, Array]:
-        x, y = x0 + bases[0] @ v[:2], y0 + bases[1] @ v[2:4]
+        x, y = x0 + v[:2] @ bases[0], y0 + v[2:4] @ bases[1]
         return x / np.linalg.norm(x), y / np.linalg.norm(y)
 
     def residuals(v: Array) -> Array:
@@ -85,10 +108,3 @@ def _solve(
     if abs(fit.x[4]) > np.cos(np.deg2rad(20.0)):
         return None
     return x, y, float(fit.cost)
-
-
-def _tangent(v: Array) -> Array:
-    """Return two unit vectors perpendicular to v and each other, (3, 2)."""
-    first = np.cross(v, np.eye(3)[np.abs(v).argmin()])
-    first /= np.linalg.norm(first)
-    return np.stack([first, np.cross(v, first)], axis=1)

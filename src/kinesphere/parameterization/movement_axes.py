@@ -1,0 +1,129 @@
+"""Axes from a joint's own movement, and everything that speaks against them."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.parameterization.anatomy import nominal_axes
+from kinesphere.parameterization.angles import two_axis_angles
+from kinesphere.parameterization.axes import find_axes
+from kinesphere.parameterization.axes.universal_joint import reference_rotation
+from kinesphere.parameterization.confidence import (
+    PERCENTILES,
+    AxesQuality,
+    Finder,
+    assess_axes,
+    contradiction,
+    reasons_to_doubt,
+)
+from kinesphere.parameterization.free_hinge import worse_than_body
+from kinesphere.parameterization.main_movements import long_phases, main_movements
+from kinesphere.parameterization.samples import JointSamples
+from kinesphere.parameterization.settings import AngleSettings, AxesSettings
+from kinesphere.parameterization.view import JointView
+
+
+@dataclass(frozen=True, eq=False)
+class MovementAxes:
+    """What a joint's movement tells about its axes."""
+
+    axes: Array
+    """(n_found, 3)"""
+    quality: AxesQuality | None
+    """None where nothing was found."""
+    doubts: tuple[str, ...]
+    """Why these axes should not serve, each a clause."""
+
+    def doubtful(self, options: AxesSettings) -> bool:
+        """Return whether anything speaks against these axes."""
+        most = np.deg2rad(options.largest_disagreement)
+        return bool(self.doubts or self.quality is None or self.quality.halves.max() > most)
+
+
+def movement_axes(view: JointView, n_axes: int, options: AxesSettings) -> MovementAxes:
+    """Return axes from the movement, how good they are, and what speaks against them."""
+    if options.method == "body":
+        return MovementAxes(np.empty((0, 3)), None, ())
+
+    def find(half: JointSamples) -> Array:
+        return find_axes(half, n_axes, options)
+
+    free = _in_free_motion(n_axes, options)
+
+    def search(among: JointSamples) -> tuple[JointSamples, Array]:
+        for phases in (among.phases,) if free else main_movements(among, options):
+            samples = among.with_phases(phases)
+            axes = find(samples)
+            if len(axes) == n_axes:
+                break
+        return samples, axes
+
+    def anew(among: JointSamples) -> Array:
+        return search(among)[1]
+
+    samples, axes = search(view.samples)
+    if len(axes) == 0:
+        unseen = not view.calibration.any()
+        return MovementAxes(
+            axes, None, ("it is never seen" if unseen else "the limb hardly moves",)
+        )
+    judged = _judged(view, samples, axes, n_axes, find, anew, options)
+    long = long_phases(samples)
+    if judged.doubtful(options) and not free and 0 < len(long) < len(samples.phases):
+        calmer = samples.with_phases(long)
+        again = find(calmer)
+        if len(again) == n_axes:
+            second = _judged(view, calmer, again, n_axes, find, anew, options)
+            if not second.doubtful(options):
+                return second
+    return judged
+
+
+def _judged(
+    view: JointView,
+    samples: JointSamples,
+    axes: Array,
+    n_axes: int,
+    find: Finder,
+    search: Finder,
+    options: AxesSettings,
+) -> MovementAxes:
+    """Return how good axes from some phases are, and what speaks against them."""
+    quality = assess_axes(samples, axes, find)
+    if len(axes) < n_axes:
+        told = f"only {len(axes)} of {n_axes} main movements is there"
+        return MovementAxes(axes, quality, (told,))
+    if _in_free_motion(n_axes, options):
+        quality = replace(quality, ranges=_free_ranges(view, axes))
+        options = replace(options, smallest_explained=0.0)
+    nominal = nominal_axes(view.name, axes) if view.human else None
+    positions = view.samples.positions
+    doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
+    if nominal is not None and n_axes == 1 and worse_than_body(axes[0], nominal[0], positions):
+        doubts.append("the body frame's axis suits all the movement clearly better")
+    if not doubts:
+        apart = contradiction(view.samples, samples, axes, quality.labels, search)
+        quality = replace(quality, halves=np.fmax(quality.halves, apart))
+        doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
+    return MovementAxes(axes, quality, tuple(doubts))
+
+
+def _in_free_motion(n_axes: int, options: AxesSettings) -> bool:
+    """Return whether the method needs no main movements."""
+    return options.method == "universal-joint" and n_axes == 2
+
+
+def _free_ranges(view: JointView, axes: Array) -> Array:
+    """Return the ranges of both angles of a joint that moves about its axes at once, (2,) rad."""
+    at = view.calibration
+    angles = two_axis_angles(
+        view.samples.rotations,
+        axes,
+        reference_rotation(view.samples),
+        view.long_axis,
+        view.twist_known[at],
+        AngleSettings(),
+    ).angles[:, :2]
+    low, high = np.percentile(angles, PERCENTILES, axis=0)
+    return np.asarray(high - low)
