@@ -81,6 +81,7 @@ def measure(run: Run, data: Path) -> dict[str, Any]:
     return {
         "paper": paper,
         "halves": {r["name"]: r["halves"] for r in usable},
+        "vendor": {r["name"]: r["vendor"] for r in usable},
         "skipped": {r["name"]: r["failure"] for r in real if "failure" in r},
         "filter": filters.summary(run("filter", filters.run, filters.TASKS)),
         "normalization": normalization.summary(

@@ -12,6 +12,7 @@ from benchmarks.axes import (
     papers_metrics,
     repeatability,
     times,
+    vendor,
 )
 from benchmarks.axes.bars import Bar
 
@@ -41,6 +42,7 @@ def all_bars(found: dict[str, Any]) -> list[Bar]:
         *normalization.bars(found["normalization"]),
         *papers_metrics.bars(found["paper"]),
         *repeatability.bars(found["halves"]),
+        *vendor.bars(found["vendor"]),
     ]
 
 
@@ -58,6 +60,7 @@ def page(found: dict[str, Any]) -> str:
             papers_metrics.page(found["paper"], found["skipped"]),
             repeatability.page(found["halves"]),
             times.page(found["times"]),
+            vendor.page(found["vendor"]),
         ]
     )
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from benchmarks.axes.papers_metrics import joint_rows
 from benchmarks.axes.repeatability import half_rows
+from benchmarks.axes.vendor import vendor_rows
 from kinesphere import read
 from kinesphere.data import Recording, Solution, TopologicalModel
 from kinesphere.errors import KinesphereError
@@ -40,6 +41,7 @@ def run_real(name: str, path: str) -> dict[str, Any]:
             "name": name,
             "paper": joint_rows(solution.motion, solution.parameters),
             "halves": half_rows(solution.motion, solution.parameters),
+            "vendor": vendor_rows(solution),
         }
     except KinesphereError as error:
         return {"name": name, "failure": str(error).partition(" (")[0].partition(";")[0]}
