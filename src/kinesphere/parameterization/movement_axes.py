@@ -8,6 +8,7 @@ from kinesphere.data import Array
 from kinesphere.parameterization.anatomy import nominal_axes
 from kinesphere.parameterization.angles import two_axis_angles
 from kinesphere.parameterization.axes import find_axes
+from kinesphere.parameterization.axes.fit import phase_labels
 from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.confidence import (
     PERCENTILES,
@@ -22,6 +23,8 @@ from kinesphere.parameterization.main_movements import long_phases, main_movemen
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import AngleSettings, AxesSettings
 from kinesphere.parameterization.view import JointView
+
+REPEATED = 2  # phases of each main movement: one alone contradicts nothing, where there are more
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,12 +55,18 @@ def movement_axes(view: JointView, n_axes: int, options: AxesSettings) -> Moveme
     free = _in_free_motion(n_axes, options)
 
     def search(among: JointSamples) -> tuple[JointSamples, Array]:
+        once = None
         for phases in (among.phases,) if free else main_movements(among, options):
+            if once is not None and phases == among.phases:
+                break  # phases of any kind repeat nothing
             samples = among.with_phases(phases)
             axes = find(samples)
             if len(axes) == n_axes:
-                break
-        return samples, axes
+                labels = phase_labels(samples, axes)
+                if min((labels == k).sum() for k in range(n_axes)) >= REPEATED:
+                    return samples, axes
+                once = once or (samples, axes)
+        return once or (samples, axes)
 
     def anew(among: JointSamples) -> Array:
         return search(among)[1]
