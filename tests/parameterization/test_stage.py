@@ -180,6 +180,16 @@ def test_a_hinge_less_certain_than_asked_for_has_the_body_axis(performance):
     assert sources == {0.0: "body", 10.0: "movement"}
 
 
+def test_halves_that_differ_a_little_are_said_and_their_axes_kept(performance):
+    start = performance.calibration[1]
+    settings = ParameterizationSettings(axes=AxesSettings(largest_disagreement=0.0))
+    solved = parameterize(performance.motion, settings, calibration=(start, start + 100))
+    assert solved.skeleton.joint("left_knee").axes_source == "movement"
+    [told] = [w for w in solved.history[-1].warnings if "a few degrees only" in w]
+    assert "left_knee (axes from two halves of the data differ by" in told
+    assert "differ" in findings(solved, "left_knee")["doubts"][-1]
+
+
 def test_free_motion_without_twist_suits_the_universal_joint(performance):
     free = slice(round(performance.calibration[1] * 25), None)
     told = performance.parameters

@@ -5,7 +5,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from kinesphere.data import PoseFlag
 from kinesphere.parameterization import ParameterizationSettings
-from kinesphere.parameterization.view import reliable_frames, view_joint
+from kinesphere.parameterization.view import reliable_frames, view_halves, view_joint
 
 SMOOTHED = 0.05  # what 4 Hz do to a limb's direction at the ends of short runs
 
@@ -67,3 +67,21 @@ def test_bad_frames_are_not_smoothed_into_good_ones(rng, calibration):
         frames[start] / joint.rate,
         (frames[stop - 1] + 1) / joint.rate,
     )
+
+
+def test_halves_are_the_calibration_cut_in_two(rng, calibration):
+    view = calibration(rng, correlated=0.5).view()
+    first, second = view_halves(view, ParameterizationSettings())
+    assert not (first.calibration & second.calibration).any()
+    assert ((first.calibration | second.calibration) == view.calibration).all()
+    assert abs(int(first.calibration.sum()) - int(second.calibration.sum())) <= 1
+    assert len(first.samples.phases) == len(second.samples.phases) == len(view.samples.phases) / 2
+
+
+def test_halves_of_nothing_are_nothing(rng, calibration):
+    joint = calibration(rng)
+    nowhere = np.zeros(len(joint.rotations), dtype=bool)
+    settings = ParameterizationSettings()
+    view = view_joint("x", joint.rotations, joint.long_axis, ~nowhere, 50.0, nowhere, settings)
+    for half in view_halves(view, settings):
+        assert not half.calibration.any()

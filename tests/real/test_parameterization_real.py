@@ -106,6 +106,12 @@ def test_no_joint_keeps_axes_that_its_halves_contradict(recordings, walk, name):
     assert hips == {"body"}  # daily motion has no main movements of the hip
 
 
+def test_axes_that_cannot_reach_where_the_limb_goes_are_doubted(recordings):
+    parameters = parameterize(motion_of(recordings / "functional" / "Test_func_rhip.c3d"))
+    assert parameters.skeleton.joint("right_hip").axes_source == "body"
+    assert any("reach" in doubt for doubt in findings(parameters, "right_hip")["doubts"])
+
+
 def test_an_elbow_that_turns_the_palm_keeps_its_own_axis_with_a_warning(recordings):
     motion = motion_of(recordings / "functional" / "Test_func_trunk.c3d")
     free, body = (

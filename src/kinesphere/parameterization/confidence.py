@@ -1,6 +1,6 @@
 """How far movement axes can be trusted: support, range, one axis at a time, agreement of halves."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,7 +100,7 @@ def _arcs(samples: JointSamples, axes: Array, labels: Labels) -> tuple[Array, Ar
 
 
 def contradiction(
-    everything: JointSamples, used: JointSamples, axes: Array, labels: Labels, find: Finder
+    halves: Iterable[JointSamples], axes: Array, shares: Array, find: Finder
 ) -> Array:
     """Return the angle between axes searched anew in each half of the time, (n_axes,) rad.
 
@@ -109,30 +109,22 @@ def contradiction(
 
     Parameters
     ----------
-    everything
-        With all phases of the calibration.
-    used
-        With the phases that the axes come from.
+    halves
+        Two, with all their phases.
     axes : (n_axes, 3)
-    labels : (n_phases,)
-        Which axis each phase of ``used`` moves about.
+    shares : (n_axes,)
+        How much of the movement about each axis lies in the first half.
     find
         Samples → axes.
     """
-    n, middle = len(everything.positions), len(everything.positions) // 2
-    told = _matched(np.empty((0, 3)), axes)
-    both = []
-    for low, high in ((0, middle), (middle, n)):
-        clipped = ((max(a, low), min(b, high)) for a, b in everything.phases)
-        half = everything.with_phases(tuple((a, b) for a, b in clipped if b - a > SHORTEST))
-        both.append(_matched(find(half), axes) if half.phases else told)
-    cosines = np.abs((both[0] * both[1]).sum(axis=1))
-    sines = np.linalg.norm(np.cross(both[0], both[1]), axis=1)
-    shared = np.abs(_early_share(used, labels, len(axes), middle) - 0.5) <= 0.5 - LEAST_SHARE
+    told = [_matched(find(half) if half.phases else np.empty((0, 3)), axes) for half in halves]
+    cosines = np.abs((told[0] * told[1]).sum(axis=1))
+    sines = np.linalg.norm(np.cross(told[0], told[1]), axis=1)
+    shared = np.abs(shares - 0.5) <= 0.5 - LEAST_SHARE
     return np.asarray(np.where(shared, np.arctan2(sines, cosines), np.nan))
 
 
-def _early_share(samples: JointSamples, labels: Labels, n_axes: int, cut: int) -> Array:
+def early_share(samples: JointSamples, labels: Labels, n_axes: int, cut: int) -> Array:
     """Return the share of each axis' moving frames that lies before a frame, (n_axes,)."""
     early, length = np.zeros(n_axes), np.zeros(n_axes)
     for (a, b), label in _zip(samples, labels):
@@ -253,7 +245,7 @@ def _splits(
     cut = int(np.median(frames))
     early = tuple((a, min(b, cut)) for a, b in phases if a < cut - SHORTEST)
     late = tuple((max(a, cut), b) for a, b in phases if b > cut + SHORTEST)
-    share = _early_share(samples, labels, n_axes, cut)
+    share = early_share(samples, labels, n_axes, cut)
     if (np.abs(share - 0.5) <= 0.5 - LEAST_SHARE).all():
         splits.append((early, late))
     return splits

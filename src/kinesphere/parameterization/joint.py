@@ -74,12 +74,13 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
     options = settings.axes
     if view.calibration.any() and view.twist_known[view.calibration].mean() < 0.5:
         options = replace(options, method="small-circle")  # orientations tell nothing here
+        settings = replace(settings, axes=options)
     observed = observed_n_axes(view.samples)
     declared = declared_n_axes(view.name, parse_counts(options.counts))
     n_axes = declared or observed or 2
     keep = options.on_doubt == "movement"
 
-    found = movement_axes(view, n_axes, options)
+    found = movement_axes(view, n_axes, settings)
     axes, quality, doubts = found.axes, found.quality, list(found.doubts)
     free = _free_hinge(view, options) if doubts and n_axes == 1 else None
     source: AxesSource = "movement"

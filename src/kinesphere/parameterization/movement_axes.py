@@ -16,13 +16,18 @@ from kinesphere.parameterization.confidence import (
     Finder,
     assess_axes,
     contradiction,
+    early_share,
     reasons_to_doubt,
 )
 from kinesphere.parameterization.free_hinge import worse_than_body
 from kinesphere.parameterization.main_movements import long_phases, main_movements
 from kinesphere.parameterization.samples import JointSamples
-from kinesphere.parameterization.settings import AngleSettings, AxesSettings
-from kinesphere.parameterization.view import JointView
+from kinesphere.parameterization.settings import (
+    AngleSettings,
+    AxesSettings,
+    ParameterizationSettings,
+)
+from kinesphere.parameterization.view import JointView, view_halves
 
 REPEATED = 2  # phases of each main movement: one alone contradicts nothing, where there are more
 
@@ -44,8 +49,9 @@ class MovementAxes:
         return bool(self.doubts or self.quality is None or self.quality.halves.max() > most)
 
 
-def movement_axes(view: JointView, n_axes: int, options: AxesSettings) -> MovementAxes:
+def movement_axes(view: JointView, n_axes: int, settings: ParameterizationSettings) -> MovementAxes:
     """Return axes from the movement, how good they are, and what speaks against them."""
+    options = settings.axes
     if options.method == "body":
         return MovementAxes(np.empty((0, 3)), None, ())
 
@@ -77,13 +83,13 @@ def movement_axes(view: JointView, n_axes: int, options: AxesSettings) -> Moveme
         return MovementAxes(
             axes, None, ("it is never seen" if unseen else "the limb hardly moves",)
         )
-    judged = _judged(view, samples, axes, n_axes, find, anew, options)
+    judged = _judged(view, samples, axes, n_axes, find, anew, settings)
     long = long_phases(samples)
     if judged.doubtful(options) and not free and 0 < len(long) < len(samples.phases):
         calmer = samples.with_phases(long)
         again = find(calmer)
         if len(again) == n_axes:
-            second = _judged(view, calmer, again, n_axes, find, anew, options)
+            second = _judged(view, calmer, again, n_axes, find, anew, settings)
             if not second.doubtful(options):
                 return second
     return judged
@@ -96,9 +102,10 @@ def _judged(
     n_axes: int,
     find: Finder,
     search: Finder,
-    options: AxesSettings,
+    settings: ParameterizationSettings,
 ) -> MovementAxes:
     """Return how good axes from some phases are, and what speaks against them."""
+    options = settings.axes
     quality = assess_axes(samples, axes, find)
     if len(axes) < n_axes:
         told = f"only {len(axes)} of {n_axes} main movements is there"
@@ -112,7 +119,9 @@ def _judged(
     if nominal is not None and n_axes == 1 and worse_than_body(axes[0], nominal[0], positions):
         doubts.append("the body frame's axis suits all the movement clearly better")
     if not doubts:
-        apart = contradiction(view.samples, samples, axes, quality.labels, search)
+        shares = early_share(samples, quality.labels, n_axes, len(positions) // 2)
+        halves = (half.samples for half in view_halves(view, settings))
+        apart = contradiction(halves, axes, shares, search)
         quality = replace(quality, halves=np.fmax(quality.halves, apart))
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
     return MovementAxes(axes, quality, tuple(doubts))

@@ -97,3 +97,24 @@ def view_joint(
         smooth, smooth @ long_axis, phases, rate, long_axis, frames, rotations[frames]
     )
     return JointView(name, rotations, long_axis, twist_known, samples, movement, chosen, human)
+
+
+def view_halves(view: JointView, settings: ParameterizationSettings) -> tuple[JointView, JointView]:
+    """Return the joint as each half of its calibration alone would show it."""
+    frames = np.flatnonzero(view.calibration)
+    middle = frames[len(frames) // 2] if len(frames) else 0
+    before = np.arange(len(view.calibration)) < middle
+    first, second = (
+        view_joint(
+            view.name,
+            view.rotations,
+            view.long_axis,
+            view.twist_known,
+            view.samples.rate,
+            view.calibration & half,
+            settings,
+            view.human,
+        )
+        for half in (before, ~before)
+    )
+    return first, second
