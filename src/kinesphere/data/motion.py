@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinesphere.data.arrays import Array, Codes, Mask, frozen, frozen_codes
 from kinesphere.data.history import History
@@ -75,17 +76,25 @@ class Motion:
         relative: Array = np.swapaxes(parent, -1, -2) @ self.rotations[:, 1:]
         return relative
 
-    def joint_centres(self) -> Array:
+    def joint_centres(self, frames: NDArray[np.intp] | slice = slice(None)) -> Array:
         """Return every joint centre in the world, (n_frames, n_joints, 3) m.
 
         Carried by the parent; by the child where the parent is unseen.
+
+        Parameters
+        ----------
+        frames
+            Which; all by default.
         """
         joints = self.skeleton.joints
         in_parent = np.array([joint.centre_in_parent for joint in joints]).reshape(-1, 3)
         in_child = np.array([joint.centre_in_child for joint in joints]).reshape(-1, 3)
         at = self.skeleton.parents[1:]
-        by_parent = _carried(self.rotations[:, at], self.origins[:, at], in_parent)
-        by_child = _carried(self.rotations[:, 1:], self.origins[:, 1:], in_child)
+        rotations, origins = self.rotations[frames], self.origins[frames]
+        by_parent = _carried(rotations[:, at], origins[:, at], in_parent)
+        if not np.isnan(by_parent).any():
+            return by_parent
+        by_child = _carried(rotations[:, 1:], origins[:, 1:], in_child)
         return np.where(np.isnan(by_parent), by_child, by_parent)
 
     def marker_positions(self) -> dict[str, Array]:

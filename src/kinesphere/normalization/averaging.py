@@ -1,10 +1,10 @@
 """A mean of rotations that a few bad ones do not move."""
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array
-from kinesphere.geometry.rotations import nearest_rotation, rotation_log
+from kinesphere.geometry.rotations import nearest_rotation, rotation_exp, rotation_log
+from kinesphere.geometry.vectors import lengths
 
 _ROUNDS = 30
 _FLOOR = 1e-3  # rad; below this distance every rotation counts alike, so a mean is found at all
@@ -37,9 +37,9 @@ def robust_mean_rotations(rotations: Array) -> Array:
     mean = nearest_rotation((rotations * known[..., None, None]).sum(axis=0))
     for _ in range(_ROUNDS):
         away = rotation_log(np.swapaxes(mean, -1, -2) @ rotations)
-        weights = known / np.maximum(np.linalg.norm(away, axis=2), _FLOOR)
+        weights = known / np.maximum(lengths(away), _FLOOR)
         step = (weights[..., None] * away).sum(axis=0) / weights.sum(axis=0)[:, None]
-        mean = mean @ Rotation.from_rotvec(step).as_matrix()
+        mean = mean @ rotation_exp(step)
         if np.abs(step).max() < 1e-12:
             break
     means[some] = nearest_rotation(mean)
