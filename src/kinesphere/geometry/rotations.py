@@ -21,9 +21,10 @@ def hat(vectors: Array) -> Array:
 def rotation_about(axis: Array, angles: Array) -> Array:
     """Return rotations about one unit axis, (3,) and (...,) rad → (..., 3, 3); NaN stays NaN."""
     k = hat(axis)
-    s, c = np.sin(angles)[..., None, None], np.cos(angles)[..., None, None]
-    turned: Array = np.eye(3) + s * k + (1 - c) * (k @ k)
-    return turned
+    # Rodrigues' formula as one product: three numbers a frame by three fixed matrices
+    shares = np.stack([np.ones_like(angles), np.sin(angles), 1 - np.cos(angles)], axis=-1)
+    turned: Array = shares @ np.stack([np.eye(3), k, k @ k]).reshape(3, 9)
+    return turned.reshape(*np.shape(angles), 3, 3)
 
 
 def rotation_between(source: Array, target: Array) -> Array:

@@ -14,6 +14,7 @@ from kinesphere.data import (
     TopologicalModel,
     UpAxis,
     check_settings,
+    given_away,
     setting,
     settings_as_json,
 )
@@ -122,10 +123,11 @@ def world_from_up(up: UpAxis, mirrored: bool = False) -> Array:
 def _turned(markers: Array, turn: Array) -> Array:
     """Permute and negate coordinates: exact, where a matrix product would turn -0 and NaN."""
     source = np.abs(turn).argmax(axis=1)
+    if (turn == np.eye(3)).all():
+        return markers
     turned: Array = np.take(markers, source, axis=-1)
     turned *= turn[np.arange(3), source]
-    turned.flags.writeable = False  # spares the container a copy
-    return turned
+    return given_away(turned)
 
 
 def _judge_mirror(chirality: Chirality, wanted: str) -> tuple[bool, tuple[str, ...]]:
