@@ -26,6 +26,7 @@ from kinesphere.quality.marker_checks import (
     check_jumps,
     check_never_seen,
 )
+from kinesphere.quality.swaps import check_swaps
 
 BODY_HEIGHT = (0.3, 2.5)
 """m between feet and head (or shoulders), from a crouching child to a giant on tiptoe."""
@@ -61,6 +62,7 @@ def check_recording(recording: Recording) -> tuple[Finding, ...]:
         check_constant,
         check_coincident,
         check_jumps,
+        check_swaps,
         _empty_frames,
         check_gaps,
     )

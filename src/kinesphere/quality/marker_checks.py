@@ -66,17 +66,19 @@ def check_constant(recording: Recording) -> Iterator[Finding]:
     still = [c for c in enough if _stands(few.markers[:, c]) and _stands(recording.markers[:, c])]
     if len(still) == len(enough):
         return  # a statue: nothing to compare with
-    for c in still:
-        label, seen = recording.labels[c], recording.seen[:, c]
-        if recording.markers[seen, c].any():  # at zero it is missing, and told so
-            yield Finding(
-                "constant",
-                "warning",
-                f"{label} never moves while others do",
-                "leave it out, or label the trial again",
-                markers=(label,),
-                frame=recording.first_frame + int(seen.argmax()),
-            )
+    # at zero a marker is missing, and told so
+    still = [c for c in still if recording.markers[recording.seen[:, c], c].any()]
+    if still:
+        labels = tuple(recording.labels[c] for c in still)
+        first = min(int(recording.seen[:, c].argmax()) for c in still)
+        yield Finding(
+            "constant",
+            "warning",
+            f"{', '.join(labels)} never move{'s' * (len(still) == 1)} while others do",
+            "label the trial again, or leave out what does not belong to the person",
+            markers=labels,
+            frame=recording.first_frame + first,
+        )
 
 
 def _stands(points: Array) -> bool:
