@@ -95,7 +95,5 @@ def _growth(results: dict[str, Any]) -> list[str]:
         n = row["n_frames"]
         cells = " | ".join(f"{1e6 * row['seconds'][stage] / n:.1f}" for stage in stages)
         line, extra = row["line_s"], 1e-6 * row["extra_bytes"]
-        lines.append(
-            f"| {n:,} | {line:.2f} | {1e6 * line / n:.1f} | {cells} | {extra:,.0f} |"
-        )
+        lines.append(f"| {n:,} | {line:.2f} | {1e6 * line / n:.1f} | {cells} | {extra:,.0f} |")
     return lines

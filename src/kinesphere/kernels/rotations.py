@@ -9,9 +9,7 @@ _SMALL = 1e-3  # rad; below it the ratio of an angle to its half's sine is a ser
 
 
 @kernel
-def quaternions_kernel(
-    rotations: NDArray[np.float64], quaternions: NDArray[np.float64]
-) -> None:
+def quaternions_kernel(rotations: NDArray[np.float64], quaternions: NDArray[np.float64]) -> None:
     """Write the unit quaternion (x, y, z, w) of every rotation, of either sign.
 
     From the largest of the diagonal and the trace, so that nothing small is divided by.
@@ -56,9 +54,7 @@ def quaternions_kernel(
 
 
 @kernel
-def rotation_vectors_kernel(
-    quaternions: NDArray[np.float64], vectors: NDArray[np.float64]
-) -> None:
+def rotation_vectors_kernel(quaternions: NDArray[np.float64], vectors: NDArray[np.float64]) -> None:
     """Write the rotation vector in rad of every unit quaternion, of length 0 to π.
 
     Parameters

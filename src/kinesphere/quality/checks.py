@@ -22,6 +22,7 @@ from kinesphere.quality.marker_checks import (
     check_at_zero,
     check_coincident,
     check_constant,
+    check_far,
     check_gaps,
     check_jumps,
     check_never_seen,
@@ -57,6 +58,7 @@ def check_recording(recording: Recording) -> tuple[Finding, ...]:
     rules: Iterable[Callable[[Recording], Iterator[Finding]]] = (
         _one_frame,
         _unit,
+        check_far,
         check_never_seen,
         check_at_zero,
         check_constant,

@@ -20,6 +20,8 @@ LONGEST_STEP = 1.0
 """s; over a longer gap a mean speed says nothing."""
 SAME_PLACE = 1e-3
 """m; two markers are 9 mm and more across."""
+FARTHEST = 1e5
+"""m; what lies farther out was never measured: 32-bit floats tell it to 8 mm at best."""
 STILL = 1e-6
 """m; a real marker jitters by a hundred times as much."""
 SAMPLED_FRAMES = 300
@@ -37,6 +39,23 @@ def check_never_seen(recording: Recording) -> Iterator[Finding]:
             f"never seen: {', '.join(labels)}",
             "label the trial again, or leave these markers out of the model",
             markers=labels,
+        )
+
+
+def check_far(recording: Recording) -> Iterator[Finding]:
+    """Find positions that no camera ever saw."""
+    markers = recording.markers
+    farthest = np.fmax(np.fmax.reduce(markers), -np.fmin.reduce(markers)).max(axis=1)
+    for c in np.flatnonzero(farthest > FARTHEST):
+        frame = int((np.abs(markers[:, c]) > FARTHEST).any(axis=1).argmax())
+        yield Finding(
+            "far",
+            "error",
+            f"{recording.labels[c]} is {farthest[c]:.3g} m away in frame "
+            f"{recording.first_frame + frame}: no position",
+            "take such positions out, or check the length unit of the file",
+            markers=(recording.labels[c],),
+            frame=recording.first_frame + frame,
         )
 
 
