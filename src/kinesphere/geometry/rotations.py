@@ -57,6 +57,17 @@ def quaternions_from_rotations(rotations: Array) -> Array:
     return quaternions.reshape(*rotations.shape[:-2], 4)
 
 
+def canonical_quaternions(rotations: Array) -> Array:
+    """Return unit quaternions xyzw with w ≥ 0, (..., 3, 3) → (..., 4); NaN stays NaN.
+
+    Where w is zero the first of x, y, z that is not counts, so that a rotation has one quaternion.
+    """
+    quaternions = quaternions_from_rotations(rotations)
+    ordered = quaternions[..., [3, 0, 1, 2]]
+    first = np.take_along_axis(ordered, (ordered != 0).argmax(axis=-1)[..., None], axis=-1)
+    return np.asarray(quaternions * np.sign(first))
+
+
 def rotation_log(rotations: Array) -> Array:
     """Return rotation vectors in rad, (..., 3, 3) → (..., 3); NaN stays NaN."""
     quaternions = quaternions_from_rotations(rotations).reshape(-1, 4)
