@@ -10,7 +10,16 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmarks.axes import angles, estimators, filters, floor, normalization, solved, times
+from benchmarks.axes import (
+    angles,
+    estimators,
+    filters,
+    floor,
+    normalization,
+    segments,
+    solved,
+    times,
+)
 from benchmarks.axes.page import all_bars, page
 from kinesphere import __version__
 
@@ -74,6 +83,7 @@ def measure(run: Run, data: Path) -> dict[str, Any]:
         "halves": {r["name"]: r["halves"] for r in usable},
         "skipped": {r["name"]: r["failure"] for r in real if "failure" in r},
         "filter": filters.summary(run("filter", filters.run, filters.TASKS)),
+        "segments": run("segments", segments.run, segments.trials(data)),
         "normalization": normalization.summary(
             run("normalization", normalization.run, normalization.TASKS)
         ),

@@ -10,6 +10,7 @@ from benchmarks.axes import (
     normalization,
     papers_metrics,
     repeatability,
+    segments,
     times,
 )
 from benchmarks.axes.bars import Bar
@@ -49,6 +50,7 @@ def page(found: dict[str, Any]) -> str:
             INTRODUCTION,
             scoreboard(all_bars(found)),
             filters.page(found["filter"]),
+            segments.page(found.get("segments", [])),
             estimators.page(found["axes"], found["free"], found["floor"]),
             angles.page(found["angles"]),
             normalization.page(found["normalization"]),
