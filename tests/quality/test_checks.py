@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from kinesphere.data import Recording
-from kinesphere.quality import check_recording, find_gaps
+from kinesphere.quality import check_recording, find_gaps, swaps
 
 FIRST = 101  # number of the first stored frame, so that indices and frame numbers differ
 
@@ -115,6 +115,16 @@ def test_labels_that_change_places_there_and_back(clean):
     assert (set(swap.markers), swap.frame) == (set(pair), FIRST + 20)
     assert dict(swap.numbers)["swaps"] == 2
     assert "change places 2 times, first into frame 121" in swap.what
+
+
+@pytest.mark.parametrize("block", [1, 12, 19, 20, 21])
+def test_exchanges_are_found_across_blocks_of_frames(clean, monkeypatch, block):
+    monkeypatch.setattr(swaps, "BLOCK", block)
+    markers = clean.markers.copy()
+    columns = [clean.labels.index(label) for label in ("LANK", "RTOE")]
+    markers[20:33, columns] = markers[20:33, columns[::-1]]
+    found = only(list(swaps.check_swaps(replace(clean, markers=markers))))
+    assert (found.frame, dict(found.numbers)["swaps"]) == (FIRST + 20, 2)
 
 
 def test_one_marker_that_jumps_onto_another_is_no_exchange(clean):

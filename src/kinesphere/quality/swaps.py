@@ -13,6 +13,8 @@ SUDDEN = 3.0
 """Times the calmer of the steps before and after: moving markers change their step by less."""
 FAR = 0.01
 """m; markers nearer to each other than this change places within their noise."""
+BLOCK = 16384
+"""Frames looked at at a time."""
 EXCHANGED = 0.5
 """Share of its own step that a marker is off the other's last place, at most."""
 
@@ -24,10 +26,12 @@ def check_swaps(recording: Recording) -> Iterator[Finding]:
     a gap is not seen.
     """
     labelled = labelled_columns(recording)
-    points = recording.markers[:, labelled]
     times: dict[tuple[int, int], list[int]] = {}
-    for frame, columns in _sudden_steps(points):
-        for a, b in _exchanges(points[frame - 1, columns], points[frame, columns]):
+    for frame, columns in _sudden_steps(recording, labelled):
+        there = [labelled[c] for c in columns]
+        for a, b in _exchanges(
+            recording.markers[frame - 1, there], recording.markers[frame, there]
+        ):
             times.setdefault((columns[a], columns[b]), []).append(frame)
     for (a, b), frames in times.items():
         pair = recording.labels[labelled[a]], recording.labels[labelled[b]]
@@ -44,13 +48,17 @@ def check_swaps(recording: Recording) -> Iterator[Finding]:
         )
 
 
-def _sudden_steps(points: Array) -> Iterator[tuple[int, list[int]]]:
-    """Return the frames into which two markers or more step suddenly, and their columns."""
-    steps = lengths(np.diff(points, axis=0))
-    around = np.pad(steps, ((1, 1), (0, 0)), constant_values=np.nan)
-    sudden = (steps > FAR) & (steps > SUDDEN * np.fmin(around[:-2], around[2:]))
-    for step in np.flatnonzero(sudden.sum(axis=1) > 1):
-        yield int(step) + 1, np.flatnonzero(sudden[step]).tolist()
+def _sudden_steps(recording: Recording, labelled: list[int]) -> Iterator[tuple[int, list[int]]]:
+    """Return the frames into which two markers or more step suddenly, and which of them do."""
+    for start in range(0, recording.n_frames - 1, BLOCK):
+        first = max(start - 1, 0)  # blocks overlap: a step is seen with those around it
+        points = recording.markers[first : start + BLOCK + 2, labelled]
+        steps = lengths(np.diff(points, axis=0))
+        around = np.pad(steps, ((1, 1), (0, 0)), constant_values=np.nan)
+        sudden = (steps > FAR) & (steps > SUDDEN * np.fmin(around[:-2], around[2:]))
+        for step in np.flatnonzero(sudden.sum(axis=1) > 1):
+            if start <= first + step < start + BLOCK:
+                yield int(first + step) + 1, np.flatnonzero(sudden[step]).tolist()
 
 
 def _exchanges(before: Array, after: Array) -> list[tuple[int, int]]:
