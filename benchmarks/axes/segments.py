@@ -163,8 +163,9 @@ in none, but for the first second of *rhip*, where a fidget of 33 deg/s is taken
 - *lankle*, *rankle*: circling or bending at 40 to 70 deg/s is one long movement. The second part is
   slow, its peaks at 30 deg/s rise little above the threshold, and it falls into pieces that miss
   their slowest moments. The last burst of *rankle* is the foot being put down.
-- *trunk*: five movements with the rests between them. From 62 s on the trunk sways at 1 to
-  12 deg/s, just below the threshold: no movement, whatever was meant.
+- *trunk*: five movements with the rests between them. From 62 s on the trunk turns about its own
+  length, ±50° of twist in the report: its direction hardly moves then, 1 to 12 deg/s, and direction
+  is all that the filter looks at, as in the paper.
 """
 
 
