@@ -17,6 +17,7 @@ from benchmarks.axes import (
     floor,
     free_motion,
     normalization,
+    segments,
     solved,
     times,
 )
@@ -84,6 +85,7 @@ def measure(run: Run, data: Path) -> dict[str, Any]:
         "vendor": {r["name"]: r["vendor"] for r in usable},
         "skipped": {r["name"]: r["failure"] for r in real if "failure" in r},
         "filter": filters.summary(run("filter", filters.run, filters.TASKS)),
+        "segments": run("segments", segments.run, segments.trials(data)),
         "normalization": normalization.summary(
             run("normalization", normalization.run, normalization.TASKS)
         ),

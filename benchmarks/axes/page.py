@@ -11,6 +11,7 @@ from benchmarks.axes import (
     normalization,
     papers_metrics,
     repeatability,
+    segments,
     times,
     vendor,
 )
@@ -53,6 +54,7 @@ def page(found: dict[str, Any]) -> str:
             INTRODUCTION,
             scoreboard(all_bars(found)),
             filters.page(found["filter"]),
+            segments.page(found.get("segments", [])),
             estimators.page(found["axes"]),
             free_motion.page(found["free"], found["floor"]),
             angles.page(found["angles"]),

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.speed.clock import StageClock, median_seconds
+from benchmarks.speed.memory import extra_bytes
 from benchmarks.speed.page import page
 from benchmarks.speed.paper import paper_comparison
 from kinesphere import __version__
@@ -23,7 +24,7 @@ from kinesphere.synthetic.layout import Layout
 
 ROOT = Path(__file__).parents[2]
 LAYOUTS: tuple[Layout, ...] = ("bodies", "cmu41")
-GROWTH = (1_000, 3_000, 10_000, 30_000, 100_000)
+GROWTH = (1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
 
 
 def main() -> int:
@@ -102,7 +103,8 @@ def _growth(n_frames: int) -> dict[str, Any]:
     recording = spoil_with_noise(performance.recording, np.random.default_rng(4))
     repeats = 3 if n_frames <= 10_000 else 1
     line_s, stages, _ = _median_line(performance, recording, "bodies", repeats)
-    return {"n_frames": n_frames, "line_s": line_s, "seconds": stages}
+    extra = extra_bytes(lambda: _solve(performance, recording, "bodies"))
+    return {"n_frames": n_frames, "line_s": line_s, "seconds": stages, "extra_bytes": extra}
 
 
 def _median_line(

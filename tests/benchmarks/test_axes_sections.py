@@ -1,11 +1,12 @@
 """Sections of the benchmark on small cases whose answer is known."""
 
 import json
+import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
 from benchmarks.axes import __main__ as main
-from benchmarks.axes import floor, free_motion
+from benchmarks.axes import floor, free_motion, segments
 from benchmarks.axes.angles import run_cross_talk
 from benchmarks.axes.estimators import run
 from benchmarks.axes.normalization import POSES, PROTOCOLS, RULES, Protocol, record
@@ -190,3 +191,16 @@ def test_figures_survive_the_file():
     text = main._lines(main._short(found), depth=2)
     assert json.loads(text) == {"angles": {"a": None, "b": [1.2346, 2]}, "skipped": {}}
     assert len(text.splitlines()) == 7
+
+
+@pytest.mark.real
+def test_a_functional_trial_is_drawn_with_its_movements(recordings):
+    task = next(t for t in segments.trials(recordings) if t[0] == "lknee")
+    trial = segments.look_at(*task)
+    row, svg = segments.row(trial), segments.picture(trial)
+    assert (row["joint"], row["axes_from"], row["valley"]) == ("left_knee", "movement", True)
+    assert row["movements"] == len(trial.view.movement.phases) == sum(row["about"])
+    assert svg.count("<rect x=") == row["movements"]
+    assert ET.fromstring(svg).tag.endswith("svg")
+    assert f"| {row['movements']} |" in segments.page([row])
+    assert segments.page([]) == ""

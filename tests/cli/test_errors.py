@@ -254,8 +254,9 @@ def test_nobody_reads():
 @pytest.mark.skipif(os.name == "nt", reason="signals are not the same there")
 def test_interrupted(tmp_path):
     code = (
-        "import os, signal, sys, kinesphere.io, kinesphere.cli.main as m;"
-        "kinesphere.io.read = lambda path: os.kill(os.getpid(), signal.SIGINT);"
+        "import os, signal, sys, time, kinesphere.io, kinesphere.cli.main as m;"
+        # another thread may take the signal: Python hears of it a little later
+        "kinesphere.io.read = lambda path: (os.kill(os.getpid(), signal.SIGINT), time.sleep(10));"
         "sys.argv[1:] = ['info', 'x.c3d']; m.main()"
     )
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)

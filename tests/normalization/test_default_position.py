@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from kinesphere.normalization.default_position import joint_speeds, paper_cost, posture_cost
+from kinesphere.normalization.default_position import paper_cost, posture_cost
 from kinesphere.normalization.samples import take_samples
 from kinesphere.normalization.settings import NormalizationSettings
 
@@ -109,7 +109,7 @@ def test_speed_is_in_metres_a_second_at_any_rate(rate, doll):
     n_frames = int(rate)
     walk = np.outer(np.arange(n_frames) / rate, [0.0, 0.0, 1.3])
     samples = take_samples(doll(n_frames=n_frames, walk=walk, rate=rate).motion, 10.0, 0.2)
-    assert_allclose(joint_speeds(samples), 1.3, atol=1e-9)
+    assert_allclose(samples.speeds, 1.3, atol=1e-9)
     assert samples.rate <= 10.0
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from kinesphere.data import Recording
-from kinesphere.quality import check_recording, find_gaps
+from kinesphere.quality import check_recording, find_gaps, swaps
 
 FIRST = 101  # number of the first stored frame, so that indices and frame numbers differ
 
@@ -104,6 +104,40 @@ def test_a_jump_is_named_with_its_frame_and_speed(clean):
     assert dict(found.numbers)["jumps"] == 2  # there and back
     assert dict(found.numbers)["fastest_m_per_s"] == pytest.approx(36, abs=3)  # 0.6 m · 60 Hz
     assert "jumps 2 times, first into frame 121" in found.what
+
+
+def test_labels_that_change_places_there_and_back(clean):
+    markers, pair = clean.markers.copy(), ("LANK", "RTOE")
+    columns = [clean.labels.index(label) for label in pair]
+    markers[20:33, columns] = markers[20:33, columns[::-1]]
+    found = [f for f in check_recording(replace(clean, markers=markers)) if f.rule == "swap"]
+    swap = only(found)
+    assert (set(swap.markers), swap.frame) == (set(pair), FIRST + 20)
+    assert dict(swap.numbers)["swaps"] == 2
+    assert "change places 2 times, first into frame 121" in swap.what
+
+
+@pytest.mark.parametrize("block", [1, 12, 19, 20, 21])
+def test_exchanges_are_found_across_blocks_of_frames(clean, monkeypatch, block):
+    monkeypatch.setattr(swaps, "BLOCK", block)
+    markers = clean.markers.copy()
+    columns = [clean.labels.index(label) for label in ("LANK", "RTOE")]
+    markers[20:33, columns] = markers[20:33, columns[::-1]]
+    found = only(list(swaps.check_swaps(replace(clean, markers=markers))))
+    assert (found.frame, dict(found.numbers)["swaps"]) == (FIRST + 20, 2)
+
+
+def test_one_marker_that_jumps_onto_another_is_no_exchange(clean):
+    there = clean.markers[20:, clean.labels.index("RTOE")]
+    spoilt = spoiled(clean, "LANK", slice(20, None), there + 0.02)
+    assert not any(f.rule == "swap" for f in check_recording(spoilt))
+
+
+def test_a_place_beyond_all_cameras_is_an_error(clean):
+    found = check_recording(spoiled(clean, "LWRA", 7, [0.0, -2e6, 0.0]))[0]
+    assert (found.rule, found.severity, found.markers) == ("far", "error", ("LWRA",))
+    assert found.frame == FIRST + 7
+    assert "2e+06 m away" in found.what
 
 
 def test_the_same_step_at_a_low_rate_is_no_jump(clean):

@@ -12,9 +12,16 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
 
+from kinesphere.data import Step
 from kinesphere.report import report_html
 from kinesphere.report.packing import unpack
-from kinesphere.report.scene import MAX_FRAMES, SCREEN_RATE, frame_stride, runs
+from kinesphere.report.scene import (
+    MAX_FRAMES,
+    SCREEN_RATE,
+    frame_stride,
+    runs,
+    scene_from_solution,
+)
 
 HOSTILE = "</script><script>alert(1)</script>"
 MILLIMETRE = 1e-3
@@ -134,6 +141,25 @@ def test_flags_and_movement_are_stretches_of_time(scene, solution):
         for first, end in stretches:
             mask[first:end] = True
         assert_array_equal(mask, solution.parameters.moving[:, j])
+
+
+def test_movements_that_axes_were_found_from_are_stretches_of_time(solution):
+    knee, other = (j for j in solution.skeleton.joints[:2])
+    phases = {knee.name: {"phases_s": [[0.5, 1.25], [2.0, 3.0]]}, other.name: {"phases_s": []}}
+    step = Step("parameterization", findings={"joints": phases})
+    sources = {knee.name: "movement", other.name: "body"}
+    joints = tuple(
+        replace(joint, axes_source=sources.get(joint.name, "body"))
+        for joint in solution.skeleton.joints
+    )
+    told = replace(
+        solution.parameters,
+        skeleton=replace(solution.skeleton, joints=joints),
+        history=(*solution.history, step),
+    )
+    shown = scene_from_solution(replace(solution, parameters=told))["measured_s"]
+    assert shown[:2] == [[[0.5, 1.25], [2.0, 3.0]], []]
+    assert scene_from_solution(solution)["measured_s"] == [[] for _ in solution.skeleton.joints]
 
 
 def test_a_joint_sits_where_parent_and_child_have_it(scene, solution):

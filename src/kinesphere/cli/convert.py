@@ -20,8 +20,8 @@ def convert(
 
     Nothing is lost where both can hold it. A recording goes to [bold].c3d[/bold],
     [bold].trc[/bold] or [bold].csv[/bold]; a solved folder to these (its angles, as
-    [bold].csv[/bold]), to [bold].bvh[/bold], [bold].osim[/bold], [bold].mot[/bold] and
-    [bold].json[/bold] (its skeleton).
+    [bold].csv[/bold]), to [bold].bvh[/bold], [bold].osim[/bold], [bold].mot[/bold],
+    [bold].json[/bold] (its skeleton) and [bold].limbs.csv[/bold] (the frame of every limb).
 
     Examples: [bold]kinesphere convert walk.c3d walk.trc[/bold],
     [bold]kinesphere convert solved walk.bvh[/bold]
@@ -61,6 +61,6 @@ def part_for(solution: "Solution", target: Path) -> object:
     suffix = target.suffix.lower()
     for part in parts:
         kind = type(part).__name__
-        if suffix and any(suffix in f.suffixes and kind in f.writers for f in known_formats()):
+        if suffix and any(f.is_named_by(target) and kind in f.writers for f in known_formats()):
             return part
     return solution

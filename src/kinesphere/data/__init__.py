@@ -3,6 +3,7 @@
 from kinesphere.data.arrays import Array as Array
 from kinesphere.data.arrays import Codes as Codes
 from kinesphere.data.arrays import Mask as Mask
+from kinesphere.data.arrays import given_away as given_away
 from kinesphere.data.directions import DIRECTIONS as DIRECTIONS
 from kinesphere.data.directions import UpAxis as UpAxis
 from kinesphere.data.directions import vector_from_direction as vector_from_direction

@@ -13,6 +13,12 @@ Codes = NDArray[np.uint8]
 _A = TypeVar("_A", bound=NDArray[Any])
 
 
+def given_away(array: _A) -> _A:
+    """Return an array nobody writes to any more: containers take it without a copy."""
+    array.flags.writeable = False
+    return array
+
+
 def frozen(values: ArrayLike, *shape: int | None, name: str) -> Array:
     """Return ``values`` as a read-only float64 array, checked against ``shape``.
 

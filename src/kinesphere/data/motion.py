@@ -4,10 +4,12 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinesphere.data.arrays import Array, Codes, Mask, frozen, frozen_codes
 from kinesphere.data.history import History
 from kinesphere.data.skeleton import Skeleton
+from kinesphere.kernels.centres import joint_centres_kernel
 
 
 class PoseFlag(IntEnum):
@@ -75,18 +77,26 @@ class Motion:
         relative: Array = np.swapaxes(parent, -1, -2) @ self.rotations[:, 1:]
         return relative
 
-    def joint_centres(self) -> Array:
+    def joint_centres(self, frames: NDArray[np.intp] | None = None) -> Array:
         """Return every joint centre in the world, (n_frames, n_joints, 3) m.
 
         Carried by the parent; by the child where the parent is unseen.
+
+        Parameters
+        ----------
+        frames : (n,)
+            Which; all by default.
         """
         joints = self.skeleton.joints
         in_parent = np.array([joint.centre_in_parent for joint in joints]).reshape(-1, 3)
         in_child = np.array([joint.centre_in_child for joint in joints]).reshape(-1, 3)
-        at = self.skeleton.parents[1:]
-        by_parent = _carried(self.rotations[:, at], self.origins[:, at], in_parent)
-        by_child = _carried(self.rotations[:, 1:], self.origins[:, 1:], in_child)
-        return np.where(np.isnan(by_parent), by_child, by_parent)
+        frames = np.arange(self.n_frames) if frames is None else frames
+        centres = np.empty((len(frames), len(joints), 3))
+        parents = self.skeleton.parents[1:]
+        joint_centres_kernel(
+            self.rotations, self.origins, frames, parents, in_parent, in_child, centres
+        )
+        return centres
 
     def marker_positions(self) -> dict[str, Array]:
         """Return where the poses put every marker, label → (n_frames, 3) m."""

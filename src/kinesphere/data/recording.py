@@ -11,6 +11,7 @@ from kinesphere.data.arrays import Array, Mask, frozen
 from kinesphere.data.directions import UpAxis
 from kinesphere.data.history import History
 from kinesphere.errors import BadRecording
+from kinesphere.geometry.vectors import is_seen
 
 OutputKind: TypeAlias = Literal[
     "angle", "force", "moment", "power", "scalar", "segment_frame", "centre_of_mass", "other"
@@ -143,7 +144,7 @@ class Recording:
     @cached_property
     def seen(self) -> Mask:
         """(n_frames, n_markers) True where a marker has a position."""
-        return np.asarray(np.isfinite(self.markers).all(axis=2))
+        return is_seen(self.markers)
 
     def columns(self, labels: tuple[str, ...]) -> list[int]:
         """Return the column of each label.

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.geometry.centre_views import Turning, View
+from kinesphere.geometry.medians import column_medians
 from kinesphere.geometry.rigid import point_covariance
 
 Array = NDArray[np.float64]
@@ -93,14 +94,6 @@ def _distances(view: View, centre: Array) -> Term:
     change = (usual - along) / expected[..., None]
     jacobian = change - 0.5 * (off / variance)[..., None] * growth
     return Term(off[..., None], jacobian[:, :, None], mask)
-
-
-def column_medians(values: Array, seen: NDArray[np.bool_] | None) -> Array:
-    """Return the median of what is seen of each column, (n, m) → (m,); none may be all unseen."""
-    if seen is None:
-        medians: Array = np.median(values, axis=0)
-        return medians
-    return np.array([np.median(v[s]) for v, s in zip(values.T, seen.T, strict=True)])
 
 
 def soft_weights(size: Array, seen: NDArray[np.bool_] | None, k: int) -> tuple[Array, Array]:

@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.geometry.algebraic_centres import sphere_centre
-from kinesphere.geometry.centre_terms import column_medians, find_information, find_terms
+from kinesphere.geometry.centre_terms import find_information, find_terms
 from kinesphere.geometry.centre_views import Turning as Turning
 from kinesphere.geometry.centre_views import View as View
+from kinesphere.geometry.medians import column_medians
+from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
 
@@ -144,7 +146,7 @@ def _robust_noise(view: View, centre: Array) -> float:
     points, seen, _, complete = view.sightings
     if points.shape[1] == 0:
         return 0.0
-    distances = np.linalg.norm(points - centre, axis=2)
+    distances = lengths(points - centre)
     off = np.abs(distances - column_medians(distances, None if complete else seen))
     return 1.4826 * float(np.median(off[seen]))
 

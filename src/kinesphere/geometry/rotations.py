@@ -2,25 +2,29 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
+
+from kinesphere.geometry.vectors import lengths
+from kinesphere.kernels.rotations import quaternions_kernel, rotation_vectors_kernel
 
 Array = NDArray[np.float64]
 
 
 def hat(vectors: Array) -> Array:
     """Return the skew matrices with ``hat(v) @ w = cross(v, w)``, (..., 3) → (..., 3, 3)."""
-    x, y, z = np.moveaxis(vectors, -1, 0)
-    o = np.zeros_like(x)
-    rows = [np.stack(row, axis=-1) for row in ((o, -z, y), (z, o, -x), (-y, x, o))]
-    return np.stack(rows, axis=-2)
+    x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
+    skew = np.zeros((*vectors.shape, 3))
+    skew[..., 0, 1], skew[..., 0, 2], skew[..., 1, 2] = -z, y, -x
+    skew[..., 1, 0], skew[..., 2, 0], skew[..., 2, 1] = z, -y, x
+    return skew
 
 
 def rotation_about(axis: Array, angles: Array) -> Array:
     """Return rotations about one unit axis, (3,) and (...,) rad → (..., 3, 3); NaN stays NaN."""
     k = hat(axis)
-    s, c = np.sin(angles)[..., None, None], np.cos(angles)[..., None, None]
-    turned: Array = np.eye(3) + s * k + (1 - c) * (k @ k)
-    return turned
+    # Rodrigues' formula as one product: three numbers a frame by three fixed matrices
+    shares = np.stack([np.ones_like(angles), np.sin(angles), 1 - np.cos(angles)], axis=-1)
+    turned: Array = shares @ np.stack([np.eye(3), k, k @ k]).reshape(3, 9)
+    return turned.reshape(*np.shape(angles), 3, 3)
 
 
 def tangent_basis(axis: Array) -> Array:
@@ -52,14 +56,40 @@ def rotation_between(source: Array, target: Array) -> Array:
     return np.asarray(turned)
 
 
+def quaternions_from_rotations(rotations: Array) -> Array:
+    """Return unit quaternions xyzw of either sign, (..., 3, 3) → (..., 4); NaN stays NaN."""
+    flat = np.ascontiguousarray(rotations, dtype=np.float64).reshape(-1, 3, 3)
+    quaternions = np.empty((len(flat), 4))
+    quaternions_kernel(flat, quaternions)
+    return quaternions.reshape(*rotations.shape[:-2], 4)
+
+
+def canonical_quaternions(rotations: Array) -> Array:
+    """Return unit quaternions xyzw with w ≥ 0, (..., 3, 3) → (..., 4); NaN stays NaN.
+
+    Where w is zero the first of x, y, z that is not counts, so that a rotation has one quaternion.
+    """
+    quaternions = quaternions_from_rotations(rotations)
+    ordered = quaternions[..., [3, 0, 1, 2]]
+    first = np.take_along_axis(ordered, (ordered != 0).argmax(axis=-1)[..., None], axis=-1)
+    return np.asarray(quaternions * np.sign(first))
+
+
 def rotation_log(rotations: Array) -> Array:
     """Return rotation vectors in rad, (..., 3, 3) → (..., 3); NaN stays NaN."""
-    flat = rotations.reshape(-1, 3, 3)
-    known = np.isfinite(flat).all(axis=(1, 2))
-    logs = np.full((len(flat), 3), np.nan)
-    if known.any():
-        logs[known] = Rotation.from_matrix(flat[known]).as_rotvec()
+    quaternions = quaternions_from_rotations(rotations).reshape(-1, 4)
+    logs = np.empty((len(quaternions), 3))
+    rotation_vectors_kernel(quaternions, logs)
     return logs.reshape(rotations.shape[:-1])
+
+
+def rotation_exp(vectors: Array) -> Array:
+    """Return the rotations of rotation vectors in rad, (..., 3) → (..., 3, 3); NaN stays NaN."""
+    angles = lengths(vectors)
+    k = hat(vectors / np.maximum(angles, np.finfo(np.float64).tiny)[..., None])
+    s, c = np.sin(angles)[..., None, None], np.cos(angles)[..., None, None]
+    turned: Array = np.eye(3) + s * k + (1 - c) * (k @ k)
+    return turned
 
 
 def rotation_angle(rotations: Array) -> Array:
@@ -73,7 +103,7 @@ def rotation_angle(rotations: Array) -> Array:
         axis=-1,
     )
     trace = np.trace(rotations, axis1=-2, axis2=-1)
-    angle: Array = np.arctan2(np.linalg.norm(axial, axis=-1), trace - 1)
+    angle: Array = np.arctan2(lengths(axial), trace - 1)
     return angle
 
 

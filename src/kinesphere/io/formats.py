@@ -107,6 +107,13 @@ register(
 )
 register(
     Format(
+        name="limb frame table",
+        suffixes=(".limbs.csv",),
+        writers={"Motion": "kinesphere.io.limbs_csv:write_limbs"},
+    )
+)
+register(
+    Format(
         name="OpenSim model",
         suffixes=(".osim",),
         writers={"Skeleton": "kinesphere.io.opensim:write_osim"},

@@ -7,6 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array, Parameters, Skeleton, Step
 from kinesphere.errors import BadModel, UnreadableFile
+from kinesphere.geometry.rotations import canonical_quaternions
 from kinesphere.io.csv import TIME_FORMAT, rate_of, read_columns, write_columns
 from kinesphere.io.skeleton_json import read_skeleton
 
@@ -29,7 +30,7 @@ def write_parameters(parameters: Parameters, path: str | Path) -> None:
     if lacking := [joint.name for joint in joints if joint.axes is None]:
         raise BadModel(f"joint {lacking[0]} has no movement axes yet: parameterize first")
     columns = [parameters.times[:, None], parameters.root_positions]
-    columns.append(_quaternions(parameters.root_rotations))
+    columns.append(canonical_quaternions(parameters.root_rotations))
     formats = [TIME_FORMAT, "%.9f", "%.12f"]
     for j, joint in enumerate(joints):
         columns += [
@@ -109,15 +110,6 @@ def _column_names(skeleton: Skeleton) -> list[str]:
         names += [f"{joint.name}.axis{k}_deg" for k in range(1, joint.n_axes + 1)]
         names += [f"{joint.name}.{what}" for what in ("twist_deg", "residual_mm", "flag")]
     return names
-
-
-def _quaternions(rotations: Array) -> Array:
-    """Return xyzw with w ≥ 0, (n, 3, 3) → (n, 4); NaN stays NaN."""
-    known = np.isfinite(rotations).all(axis=(1, 2))
-    quaternions = np.full((len(rotations), 4), np.nan)
-    if known.any():
-        quaternions[known] = Rotation.from_matrix(rotations[known]).as_quat(canonical=True)
-    return quaternions
 
 
 def _matrices(quaternions: Array) -> Array:

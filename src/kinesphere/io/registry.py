@@ -35,6 +35,12 @@ class Format:
     writers: Mapping[str, str] = field(default_factory=dict)
     """Name of a container (``Recording``) → function called with the container and a path."""
 
+    def is_named_by(self, path: Path) -> bool:
+        """Return whether a path is called as one of these; ``a.limbs.csv`` is a ``.csv``, too."""
+        suffix = "" if path.is_dir() else path.suffix.lower()
+        longer = path.name.lower().endswith(tuple(s for s in self.suffixes if s))
+        return suffix in self.suffixes or (suffix != "" and longer)
+
 
 _formats: list[Format] = []
 
@@ -76,11 +82,11 @@ def write(obj: Any, path: str | Path) -> None:
     able = [f for f in _formats if kind in f.writers]
     if not able:
         raise UnknownFormat(f"{path}: nothing can write a {kind}")
-    suffix = path.suffix.lower() if not path.is_dir() else ""
     for candidate in able:
-        if suffix in candidate.suffixes:
+        if candidate.is_named_by(path):
             function_named(candidate.writers[kind])(obj, path)
             return
+    suffix = path.suffix.lower() if not path.is_dir() else ""
     possible = ", ".join(f"{f.suffixes[0] or 'a folder'} ({f.name})" for f in able)
     shown = f"suffix {suffix!r}" if suffix else "no suffix"
     raise UnknownFormat(f"{path}: {shown} names no format that holds a {kind}; known: {possible}")

@@ -58,7 +58,9 @@ def match_labels(
         recording,
         markers=recording.markers[:, kept] if dropped else recording.markers,
         labels=tuple(labels[column] for column in kept),
-        residuals=None if recording.residuals is None else recording.residuals[:, kept],
+        residuals=recording.residuals[:, kept]
+        if dropped and recording.residuals is not None
+        else recording.residuals,
         history=(*recording.history, step),
     )
 

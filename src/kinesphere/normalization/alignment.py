@@ -62,21 +62,20 @@ def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Ali
         shifts=np.zeros((n_limbs, 3)),
         lengths=np.linalg.norm(anatomy.distal_ends - anatomy.proximal_ends, axis=1),
     )
-    seen = np.asarray(np.isfinite(samples.rotations).all(axis=(2, 3)))
+    bodies, limbs = bodies[chosen], samples.rotations[chosen]
     sure = twist_told(samples.motion.flags)
+    told = sure[samples.frames[chosen]][..., None, None]
+    means = _mean_poses(bodies[:, None], np.where(told, limbs, np.nan))
     for limb, name in enumerate(anatomy.skeleton.limb_names):
-        usable = chosen & seen[:, limb]
-        twist_known = usable & sure[samples.frames, limb]
-        base_from_limb = None
-        if twist_known.any():
-            base_from_limb = _mean_pose(bodies[twist_known], samples.rotations[twist_known, limb])
-        elif limb > 0:
+        base_from_limb = _known(means[limb])
+        if base_from_limb is None and limb > 0:
             base_from_limb = _pose_at_parent(samples, limb, found.turns, sure[:, limb])
             if base_from_limb is not None:
                 found.elsewhere.append(name)
-        if base_from_limb is None and usable.any():
-            base_from_limb = _mean_pose(bodies[usable], samples.rotations[usable, limb])
-            found.twistless.append(name)
+        if base_from_limb is None:
+            base_from_limb = _known(_mean_poses(bodies[:, None], limbs[:, limb, None])[0])
+            if base_from_limb is not None:
+                found.twistless.append(name)
         if base_from_limb is None:
             found.never.append(name)
             continue
@@ -114,9 +113,13 @@ def _frame(
     return minimal_frame(points, ideal), ideal, off
 
 
-def _mean_pose(bases: Array, rotations: Array) -> Array:
-    base_from_limb = np.swapaxes(bases, -1, -2) @ rotations
-    return np.asarray(robust_mean_rotations(base_from_limb[:, None])[0])
+def _mean_poses(bases: Array, rotations: Array) -> Array:
+    """Return the mean ``base_from_limb``, (n, n_limbs, 3, 3) → (n_limbs, 3, 3), NaN left out."""
+    return robust_mean_rotations(np.swapaxes(bases, -1, -2) @ rotations)
+
+
+def _known(rotation: Array) -> Array | None:
+    return rotation if np.isfinite(rotation).all() else None
 
 
 def _pose_at_parent(samples: Samples, limb: int, turns: Array, sure: Mask) -> Array | None:
@@ -141,4 +144,4 @@ def _pose_at_parent(samples: Samples, limb: int, turns: Array, sure: Mask) -> Ar
     off = angle_between(points, ideal)
     near = np.argsort(off, kind="stable")[:_MOST]
     near = near[off[near] <= off[near[0]] + _NEAR]
-    return _mean_pose(parents[near], limbs[near])
+    return _known(_mean_poses(parents[near, None], limbs[near, None])[0])

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array
-from kinesphere.geometry.rotations import nearest_rotation, rotation_log
+from kinesphere.geometry.rotations import nearest_rotation, rotation_exp, rotation_log
+from kinesphere.geometry.vectors import lengths
 
 _ROUNDS = 30
 _FREEDOM = 5.0  # of the t distribution: nearly a mean where errors are normal
@@ -53,10 +53,10 @@ def _settle(mean: Array, rotations: Array, weigh: Callable[[Array], Array]) -> t
     """Return the mean that its own weights keep, (n_columns, 3, 3), and all distances from it."""
     for _ in range(_ROUNDS):
         away = rotation_log(np.swapaxes(mean, -1, -2) @ rotations)
-        apart = np.linalg.norm(away, axis=2)
+        apart = lengths(away)
         weights = weigh(apart)
         step = (weights[..., None] * away).sum(axis=0) / weights.sum(axis=0)[:, None]
-        mean = mean @ Rotation.from_rotvec(step).as_matrix()
+        mean = mean @ rotation_exp(step)
         if np.abs(step).max() < 1e-12:
             break
     return mean, apart

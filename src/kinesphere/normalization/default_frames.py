@@ -11,7 +11,6 @@ from kinesphere.normalization.averaging import robust_mean_rotations
 from kinesphere.normalization.default_position import (
     JOINTS_OF_A_PLANE,
     PositionCost,
-    joint_speeds,
     paper_cost,
     posture_angles,
     posture_cost,
@@ -97,7 +96,7 @@ def _margin(
     Where nothing is good, differences count less. Somebody who never stands still is averaged over
     whole strides: in each half of one, pelvis and shoulders turn the opposite way.
     """
-    moves = joint_speeds(samples)[best] > settings.speed * samples.anatomy.span
+    moves = samples.speeds[best] > settings.speed * samples.anatomy.span
     if moves and position.absolute:
         return _STRIDE * cost
     return position.margin + min(_SHARE * abs(cost), _MOST_SHARED)

@@ -50,7 +50,7 @@ def posture_cost(samples: Samples, settings: NormalizationSettings) -> PositionC
     }
     span = samples.anatomy.span
     plane = plane_distances(samples)
-    speed = joint_speeds(samples)
+    speed = samples.speeds
     cost = np.zeros(len(samples.frames))
     for name, angle in angles.items():
         cost += _term(np.minimum(angle, _FARTHEST), scales[name])
@@ -79,7 +79,7 @@ def paper_cost(samples: Samples, settings: NormalizationSettings) -> PositionCos
     seen = np.isfinite(joints).all(axis=2)
     away = np.linalg.norm(joints - centres[:, None], axis=2)
     reach = np.where(seen, away, 0.0).sum(axis=1) / np.maximum(seen.sum(axis=1), 1)
-    speed = joint_speeds(samples)
+    speed = samples.speeds
     cost = _z_score(variances[:, 2]) + _z_score(shape) - _z_score(reach)
     slow = ~(speed > settings.speed * span / 2)  # an unknown speed is no reason against a frame
     if slow.any():
@@ -134,16 +134,6 @@ def plane_distances(samples: Samples) -> Array:
         return np.zeros(len(samples.frames))
     distance: Array = np.sqrt(fit_planes(samples.joints)[2][:, 2])
     return distance
-
-
-def joint_speeds(samples: Samples) -> Array:
-    """Return the median speed of the joints, (n,) m/s; 0 where a single frame tells none."""
-    speeds = np.linalg.norm(samples.velocities, axis=2)
-    known = np.isfinite(speeds).any(axis=1)
-    median = np.zeros(len(speeds))
-    if known.any():
-        median[known] = np.nanmedian(speeds[known], axis=1)
-    return median
 
 
 def _angle(a: Array, b: Array) -> Array:

@@ -7,6 +7,7 @@ import numpy as np
 
 from kinesphere.data import Array, Json, Mask, vector_from_direction
 from kinesphere.errors import AmbiguousFacing, BadSetting
+from kinesphere.geometry.medians import column_medians
 from kinesphere.normalization.anatomy import without_side
 from kinesphere.normalization.samples import Samples
 from kinesphere.normalization.vectors import angle_between, unit
@@ -240,8 +241,8 @@ def _walking(samples: Samples, bodies: Array) -> Witness | None:
     known = np.asarray(np.isfinite(samples.velocities).any(axis=(1, 2)))
     if not known.any():
         return None
-    velocity = np.full((len(known), 3), np.nan)
-    velocity[known] = np.nanmedian(samples.velocities[known], axis=1)
+    by_joint = np.swapaxes(samples.velocities, 0, 1).reshape(samples.velocities.shape[1], -1)
+    velocity = column_medians(by_joint, np.isfinite(by_joint)).reshape(-1, 3)
     velocity[:, 1] = 0.0
     speed = np.linalg.norm(velocity, axis=1)
     walks = speed > _WALKS * samples.anatomy.span

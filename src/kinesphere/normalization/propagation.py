@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinesphere.data import Array, Joint, Limb, Motion, Skeleton
+from kinesphere.data import Array, Joint, Limb, Motion, Skeleton, given_away
 from kinesphere.normalization.kernels import move_frames
 
 
@@ -27,12 +27,11 @@ def propagate(motion: Motion, turns: Array, shifts: Array, along: Array, lengths
         Used where a limb has no length yet.
     """
     rotations, origins = move_frames(motion.rotations, motion.origins, turns, shifts)
-    rotations.flags.writeable = origins.flags.writeable = False  # spares the container a copy
     return replace(
         motion,
         skeleton=move_skeleton(motion.skeleton, turns, shifts, along, lengths),
-        rotations=rotations,
-        origins=origins,
+        rotations=given_away(rotations),
+        origins=given_away(origins),
     )
 
 

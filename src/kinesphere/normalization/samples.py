@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Motion
+from kinesphere.geometry.medians import column_medians
+from kinesphere.geometry.vectors import lengths
 from kinesphere.normalization.anatomy import Anatomy
 
 UP = np.array([0.0, 1.0, 0.0])
@@ -59,6 +61,12 @@ class Samples:
             moved: Array = self._joints_at(after) - self._joints_at(before)
             return np.asarray(moved / seconds[:, None, None])
 
+    @cached_property
+    def speeds(self) -> Array:
+        """(n,) m/s, median speed of the joints; 0 where a single frame tells none."""
+        speeds = lengths(self.velocities)
+        return np.nan_to_num(column_medians(speeds.T, np.isfinite(speeds.T)), nan=0.0)
+
     def pair_centre(self, name: str) -> Array:
         """Return the middle between a left and right joint, (n, 3) m; NaN if not both there."""
         return np.asarray((self.joint(f"left_{name}") + self.joint(f"right_{name}")) / 2)
@@ -95,15 +103,7 @@ class Samples:
         return np.where(lies[:, None], along, UP)
 
     def _joints_at(self, frames: NDArray[np.intp]) -> Array:
-        few = Motion(
-            skeleton=self.motion.skeleton,
-            rotations=self.motion.rotations[frames],
-            origins=self.motion.origins[frames],
-            residuals=self.motion.residuals[frames],
-            flags=self.motion.flags[frames],
-            rate=self.motion.rate,
-        )
-        return few.joint_centres()
+        return self.motion.joint_centres(frames)
 
 
 def take_samples(motion: Motion, rate: float, speed_window: float) -> Samples:

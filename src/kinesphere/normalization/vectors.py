@@ -3,6 +3,7 @@
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.geometry.vectors import lengths
 
 
 def unit(vectors: Array, shortest: float = 1e-9) -> Array:
@@ -10,7 +11,7 @@ def unit(vectors: Array, shortest: float = 1e-9) -> Array:
 
     NaN where that is ``shortest`` or less, in the vectors' unit: their direction is rounding error.
     """
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    length = lengths(vectors)[..., None]
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.asarray(np.where(length > shortest, vectors / length, np.nan))
 
@@ -20,5 +21,4 @@ def angle_between(a: Array, b: Array) -> Array:
 
     From sine and cosine: the cosine alone loses half the digits near 0 and π. NaN stays NaN.
     """
-    sine = np.linalg.norm(np.cross(a, b), axis=-1)
-    return np.asarray(np.arctan2(sine, (a * b).sum(axis=-1)))
+    return np.asarray(np.arctan2(lengths(np.cross(a, b)), np.einsum("...i,...i->...", a, b)))

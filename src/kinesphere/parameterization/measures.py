@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from kinesphere.data import Array, Json
-from kinesphere.geometry.rotations import rotation_angle
+from kinesphere.geometry.vectors import lengths
 
 
 def lever(centre_in_child: Array, length: float, long_axis: Array) -> Array:
@@ -21,8 +21,7 @@ def lever(centre_in_child: Array, length: float, long_axis: Array) -> Array:
 
 def mid_point_residuals(measured: Array, rebuilt: Array, mid_point: Array) -> Array:
     """Return the distance between the mid point of measured and rebuilt poses, (n,) m."""
-    residuals: Array = np.linalg.norm((measured - rebuilt) @ mid_point, axis=-1)
-    return residuals
+    return lengths((measured - rebuilt) @ mid_point)
 
 
 def paper_measures(
@@ -35,15 +34,12 @@ def paper_measures(
     twist rebuild almost any pose, right or wrong.
     """
     reach = float(np.linalg.norm(mid_point))
-    position = np.linalg.norm((measured - rebuilt) @ long_axis, axis=-1) * reach * 1e3
-    cosines = (measured * rebuilt).sum(axis=-2)
-    # chord of each axis pair: precise for small angles, where the cosine is not
-    chords = np.linalg.norm(measured - rebuilt, axis=-2)
-    pairs = np.where(
-        cosines > 0, 2 * np.arcsin(np.clip(chords / 2, 0, 1)), np.arccos(np.clip(cosines, -1, 1))
-    )
-    summed = np.rad2deg(pairs.sum(axis=-1))
-    geodesic = np.rad2deg(rotation_angle(np.swapaxes(rebuilt, -1, -2) @ measured))
+    apart = measured - rebuilt
+    position = lengths(apart @ long_axis) * reach * 1e3
+    # chords of the axis pairs: precise for small angles, where cosines are not
+    chords = np.einsum("nij,nij->nj", apart, apart)
+    summed = np.rad2deg(2 * np.arcsin(np.minimum(np.sqrt(chords) / 2, 1)) @ np.ones(3))
+    geodesic = np.rad2deg(2 * np.arcsin(np.minimum(np.sqrt(chords @ np.ones(3) / 8), 1)))
     return {
         "position_deviation_mean_mm": number(position, np.mean),
         "position_deviation_median_mm": number(position, np.median),

@@ -6,7 +6,8 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from kinesphere.data import Array, Mask
-from kinesphere.parameterization.samples import Phase, runs
+from kinesphere.geometry.vectors import lengths
+from kinesphere.parameterization.samples import Phase, mask_from_runs, run_ends, runs
 from kinesphere.parameterization.settings import FilterSettings
 
 BINS = 100  # of the speed histogram (paper section 4.1)
@@ -88,7 +89,7 @@ def sample_speeds(positions: Array, rate: float, window: float) -> Array:
     before = np.maximum(at - (half if window else 1), 0)
     after = np.minimum(at + half, n - 1) if window else at
     with np.errstate(invalid="ignore", divide="ignore"):
-        chord = np.linalg.norm(positions[after] - positions[before], axis=1)
+        chord = lengths(positions[after] - positions[before])
         speeds = 2 * np.arcsin(np.minimum(chord / 2, 1.0)) * rate / (after - before)
     return np.asarray(speeds)
 
@@ -153,7 +154,7 @@ def valley_threshold(speeds: Array, slowest: float, fastest: float) -> float | N
     left, right = np.maximum.accumulate(heights), np.maximum.accumulate(heights[::-1])[::-1]
     lower = np.minimum(left, right)
     depth = 1 - heights / np.maximum(lower, 1e-300)
-    slow_share = np.array([(speeds < centre).mean() for centre in centres])
+    slow_share = np.searchsorted(np.sort(speeds), centres) / len(speeds)
     allowed = (centres >= slowest) & (centres <= fastest) & (depth >= DEPTH)
     allowed &= (slow_share >= SIDE) & (slow_share <= 1 - SIDE)
     if not allowed.any():
@@ -166,11 +167,10 @@ def valley_threshold(speeds: Array, slowest: float, fastest: float) -> float | N
 
 def hysteresis(speeds: Array, high: float, low: float) -> Mask:
     """Return runs above ``low`` that rise above ``high`` somewhere; NaN ends a run."""
-    moving = np.zeros(len(speeds), dtype=bool)
-    for start, stop in runs(np.asarray(speeds > low)):
-        if speeds[start:stop].max() > high:
-            moving[start:stop] = True
-    return moving
+    starts, stops = run_ends(np.asarray(speeds > low))
+    fast = np.concatenate([[0], np.cumsum(speeds > high)])
+    rises = fast[stops] > fast[starts]
+    return mask_from_runs(starts[rises], stops[rises], len(speeds))
 
 
 def trim(moving: Mask, frames: int) -> Mask:
@@ -178,29 +178,23 @@ def trim(moving: Mask, frames: int) -> Mask:
 
     A run at the first or last frame ends there because the recording does: it is kept.
     """
-    kept = moving.copy()
-    for start, stop in runs(moving):
-        if start > 0:
-            kept[start : start + frames] = False
-        if stop < len(moving):
-            kept[max(start, stop - frames) : stop] = False
-    return kept
+    starts, stops = run_ends(moving)
+    starts = np.where(starts > 0, starts + frames, starts)
+    stops = np.where(stops < len(moving), stops - frames, stops)
+    return mask_from_runs(starts, stops, len(moving))
 
 
 def bridge(moving: Mask, known: Mask, longest: int) -> Mask:
     """Close rests of up to ``longest`` known frames between two movements."""
-    closed = moving.copy()
-    for start, stop in runs(~moving):
-        inside = start > 0 and stop < len(moving)
-        if inside and stop - start <= longest and known[start:stop].all():
-            closed[start:stop] = True
-    return closed
+    starts, stops = run_ends(~moving)
+    unknown = np.concatenate([[0], np.cumsum(~known)])
+    inside = (starts > 0) & (stops < len(moving)) & (unknown[stops] == unknown[starts])
+    closed = inside & (stops - starts <= longest)
+    return moving | mask_from_runs(starts[closed], stops[closed], len(moving))
 
 
 def drop_short(moving: Mask, shortest: int) -> Mask:
     """Forget movements of fewer than ``shortest`` frames."""
-    kept = moving.copy()
-    for start, stop in runs(moving):
-        if stop - start < shortest:
-            kept[start:stop] = False
-    return kept
+    starts, stops = run_ends(moving)
+    long = stops - starts >= shortest
+    return mask_from_runs(starts[long], stops[long], len(moving))

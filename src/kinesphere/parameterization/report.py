@@ -1,23 +1,48 @@
 """What a person is told about the parameterization of all joints: few sentences, not many."""
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
-from kinesphere.data import Array, Codes, JointFlag, Json, Mask
+from kinesphere.data import Array, Codes, JointFlag, Json
 from kinesphere.parameterization.joint import JointFit
 from kinesphere.parameterization.measures import number
 from kinesphere.parameterization.view import JointView
 
 
+class Told(NamedTuple):
+    """What the movement of one joint tells, once its frames may be forgotten."""
+
+    threshold: float
+    """rad/s, between movement and rest."""
+    valley: bool
+    """Whether the speeds have a valley to put it in."""
+    moves: bool
+    """Whether there is any movement phase."""
+    twist: bool
+    """Whether any frame tells the twist; True too where none is seen."""
+
+
+def told(view: JointView) -> Told:
+    """Return what a joint's view tells, without its arrays."""
+    seen = np.isfinite(view.rotations[:, 0, 0])
+    return Told(
+        threshold=view.movement.threshold,
+        valley=view.movement.valley,
+        moves=bool(view.samples.phases),
+        twist=bool(view.twist_known[seen].any() or not seen.any()),
+    )
+
+
 def stage_warnings(
-    views: Mapping[str, JointView], fits: Mapping[str, JointFit], method: str
+    seen: Mapping[str, Told], fits: Mapping[str, JointFit], method: str
 ) -> tuple[str, ...]:
     """Return what was guessed or is doubtful, joints of one complaint in one sentence.
 
     Parameters
     ----------
-    views, fits
+    seen, fits
         By joint name.
     method
         The axis method asked for; body axes that were asked for are no complaint.
@@ -59,11 +84,11 @@ def stage_warnings(
         )
     no_valley = [
         name
-        for name, view in views.items()
-        if not view.movement.valley and view.samples.phases and fits[name].source == "movement"
+        for name, joint in seen.items()
+        if joint.moves and not joint.valley and fits[name].source == "movement"
     ]
     if no_valley:
-        threshold = np.rad2deg(views[no_valley[0]].movement.threshold)
+        threshold = np.rad2deg(seen[no_valley[0]].threshold)
         warnings.append(
             f"nothing parts movement from rest at {', '.join(no_valley)}: "
             f"{threshold:.1f} deg/s was taken as the limit"
@@ -77,7 +102,7 @@ def stage_warnings(
     ]
     if one_only:
         warnings.append(f"two axes were asked for, one is seen to move, at {', '.join(one_only)}")
-    untwisted = [name for name, view in views.items() if _never(view.twist_known, view.rotations)]
+    untwisted = [name for name, joint in seen.items() if not joint.twist]
     if untwisted:
         warnings.append(f"nothing tells the twist at {', '.join(untwisted)}")
     return tuple(warnings)
@@ -99,8 +124,3 @@ def result_findings(residuals: Array, twists: Array, flags: Codes) -> dict[str, 
         "unreachable": share(JointFlag.UNREACHABLE),
         "singular": share(JointFlag.SINGULAR),
     }
-
-
-def _never(known: Mask, rotations: Array) -> bool:
-    seen = np.isfinite(rotations[:, 0, 0])
-    return bool(seen.any() and not known[seen].any())

@@ -8,7 +8,7 @@ from scipy.signal import butter, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array, Mask
-from kinesphere.geometry.rotations import rotation_angle
+from kinesphere.geometry.rotations import quaternions_from_rotations, rotation_angle
 
 Frames = NDArray[np.intp]
 Phase = tuple[int, int]
@@ -49,9 +49,26 @@ class JointSamples:
 
 def runs(mask: Mask) -> tuple[Phase, ...]:
     """Return the runs of True, (n_frames,) → ((start, stop), …)."""
-    edges = np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8))
-    starts, stops = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1)
-    return tuple((int(a), int(b)) for a, b in zip(starts, stops, strict=True))
+    starts, stops = run_ends(mask)
+    return tuple(zip(starts.tolist(), stops.tolist(), strict=True))
+
+
+def run_ends(mask: Mask) -> tuple[Frames, Frames]:
+    """Return where runs of True start and stop, (n_frames,) → (n_runs,) twice."""
+    edges = np.flatnonzero(np.diff(mask, prepend=False, append=False))
+    return edges[::2], edges[1::2]
+
+
+def mask_from_runs(starts: Frames, stops: Frames, n_frames: int) -> Mask:
+    """Return the mask, (n_frames,), that is True in runs; those that stop at their start count not.
+
+    The inverse of `run_ends`.
+    """
+    ends = np.zeros(n_frames + 1, dtype=np.intp)
+    some = stops > starts
+    np.add.at(ends, starts[some], 1)
+    np.add.at(ends, stops[some], -1)
+    return np.asarray(np.cumsum(ends[:-1]) > 0)
 
 
 SPIKE = np.deg2rad(700.0)  # rad/s there and back within a frame: no limb does that
@@ -66,13 +83,18 @@ def without_spikes(rotations: Array, rate: float) -> Array:
     """
     if len(rotations) < 3:
         return rotations
-    before = rotation_angle(np.swapaxes(rotations[:-1], -1, -2) @ rotations[1:])
-    across = rotation_angle(np.swapaxes(rotations[:-2], -1, -2) @ rotations[2:])
-    away, back = before[:-1], before[1:]
+    # the cosines alone tell nearly all frames from spikes
+    traces = np.einsum("nij,nij->n", rotations[:-1], rotations[1:])
+    fast = traces < 1 + 2 * np.cos(min(SPIKE / rate, np.pi)) + 1e-9  # False where NaN
+    at = np.flatnonzero(fast[:-1] & fast[1:]) + 1
+    if len(at) == 0:
+        return rotations
+    before, here, after = rotations[at - 1], rotations[at], rotations[at + 1]
+    steps = [(before, here), (here, after), (before, after)]
+    away, back, across = (rotation_angle(np.swapaxes(a, -1, -2) @ b) for a, b in steps)
     with np.errstate(invalid="ignore"):
-        spike = np.minimum(away, back) > np.maximum(SPIKE / rate, SPIKE_RATIO * across)
+        at = at[np.minimum(away, back) > np.maximum(SPIKE / rate, SPIKE_RATIO * across)]
     mended = rotations.copy()
-    at = np.flatnonzero(spike) + 1
     mended[at] = rotations[at - 1]
     return mended
 
@@ -104,7 +126,7 @@ def smooth_rotations(rotations: Array, rate: float, cutoff: float) -> Array:
     for start, stop in runs(np.asarray(np.isfinite(rotations).all(axis=(1, 2)))):
         if stop - start < 4:
             continue
-        q = Rotation.from_matrix(rotations[start:stop]).as_quat()
+        q = quaternions_from_rotations(rotations[start:stop])
         flips = np.where((q[1:] * q[:-1]).sum(axis=1) < 0, -1.0, 1.0)
         q[1:] *= np.cumprod(flips)[:, None]
         padding = min(stop - start - 1, int(np.ceil(rate / cutoff)))

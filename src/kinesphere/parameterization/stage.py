@@ -16,9 +16,11 @@ from kinesphere.data import (
     PoseFlag,
     Skeleton,
     Step,
+    given_away,
 )
 from kinesphere.errors import BadSetting
 from kinesphere.geometry.chain import joint_rotations
+from kinesphere.geometry.vectors import lengths
 from kinesphere.parameterization.anatomy import human_plan, without_side
 from kinesphere.parameterization.angles import JointAngles
 from kinesphere.parameterization.joint import (
@@ -31,13 +33,13 @@ from kinesphere.parameterization.measures import (
     mid_point_residuals,
     paper_measures,
 )
-from kinesphere.parameterization.report import result_findings, stage_warnings
+from kinesphere.parameterization.report import Told, result_findings, stage_warnings, told
 from kinesphere.parameterization.settings import (
     AxesSettings,
     ParameterizationSettings,
     parse_windows,
 )
-from kinesphere.parameterization.view import JointView, reliable_frames, view_joint
+from kinesphere.parameterization.view import reliable_frames, view_joint
 
 TORN = 0.02  # m, joints closer together than this are never called dislocated
 OUTLYING = 6.0  # robust standard deviations
@@ -87,15 +89,17 @@ def parameterize(
     flags = np.zeros((n, n_joints), dtype=np.uint8)
     moving = np.zeros((n, n_joints), dtype=bool)
     human = human_plan(skeleton)
-    world = np.array(motion.rotations)  # a twist nobody knows is taken out of it, outward
+    known = motion.flags != PoseFlag.TWIST_UNKNOWN
+    # a twist nobody knows is taken out of the poses, outward
+    world = motion.rotations if known.all() else np.array(motion.rotations)
     joints: list[Joint] = []
     findings: dict[str, Json] = {}
-    views: dict[str, JointView] = {}
+    seen: dict[str, Told] = {}
     fits: dict[str, JointFit] = {}
     for j, joint in enumerate(skeleton.joints):
         limb, parent = skeleton.limbs[j + 1], skeleton.parents[j + 1]
         rotations = np.swapaxes(world[:, parent], -1, -2) @ world[:, j + 1]
-        twist_known = motion.flags[:, j + 1] != PoseFlag.TWIST_UNKNOWN
+        twist_known = known[:, j + 1]
         view = view_joint(
             joint.name,
             rotations,
@@ -114,8 +118,9 @@ def parameterize(
         residuals[:, j] = mid_point_residuals(rotations, rebuilt, mid_point)
         moving[:, j] = view.movement.moving
         flags[:, j] = _flags(motion, j, solved, fit, settings)
-        unknown = ~twist_known & np.isfinite(rebuilt[:, 0, 0])
-        world[unknown, j + 1] = world[unknown, parent] @ rebuilt[unknown]
+        unknown = np.flatnonzero(~twist_known & np.isfinite(rebuilt[:, 0, 0]))
+        if len(unknown):
+            world[unknown, j + 1] = world[unknown, parent] @ rebuilt[unknown]
         joints.append(
             replace(
                 joint,
@@ -125,7 +130,7 @@ def parameterize(
                 axes_uncertainty=fit.uncertainty,
             )
         )
-        views[joint.name], fits[joint.name] = view, fit
+        seen[joint.name], fits[joint.name] = told(view), fit
         findings[joint.name] = {
             **fit.findings,
             "moving_s": float(view.movement.moving.sum() / motion.rate),
@@ -134,7 +139,7 @@ def parameterize(
             **result_findings(residuals[:, j], twists[:, j], flags[:, j]),
             **paper_measures(rotations, rebuilt, limb.long_axis, mid_point),
         }
-    warnings = stage_warnings(views, fits, settings.axes.method)
+    warnings = stage_warnings(seen, fits, settings.axes.method)
     own = [name for name, fit in fits.items() if fit.source != "reused"]
     if reuse is not None and own:
         warnings += (
@@ -155,11 +160,11 @@ def parameterize(
         skeleton=replace(skeleton, joints=tuple(joints), history=(*motion.history, step)),
         root_positions=motion.origins[:, 0],
         root_rotations=motion.rotations[:, 0],
-        angles=angles,
-        twists=twists,
-        residuals=residuals,
-        flags=flags,
-        moving=moving,
+        angles=given_away(angles),
+        twists=given_away(twists),
+        residuals=given_away(residuals),
+        flags=given_away(flags),
+        moving=given_away(moving),
         rate=motion.rate,
         first_frame=motion.first_frame,
         history=(*motion.history, step),
@@ -250,7 +255,7 @@ def _torn(motion: Motion, j: int) -> Mask:
     joint, parent = motion.skeleton.joints[j], motion.skeleton.parents[j + 1]
     by_parent = motion.rotations[:, parent] @ joint.centre_in_parent + motion.origins[:, parent]
     by_child = motion.rotations[:, j + 1] @ joint.centre_in_child + motion.origins[:, j + 1]
-    apart = np.linalg.norm(by_parent - by_child, axis=1)
+    apart = lengths(by_parent - by_child)
     known: Mask = np.isfinite(apart)
     if not known.any():
         return known

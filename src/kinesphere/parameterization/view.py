@@ -84,10 +84,12 @@ def view_joint(
     movement = find_movement(smooth @ long_axis, rate, settings.filter, calibration)
     chosen = np.asarray(np.isfinite(smooth[:, 0, 0]) & calibration)
     frames = np.flatnonzero(chosen)
-    if len(frames) < len(rotations):
-        own = np.where(chosen[:, None, None], rotations, np.nan)
-        smooth = smooth_rotations(own, rate, cutoff)
-    smooth = smooth[frames]
+    if 0 < len(frames) < len(rotations):
+        first, own = frames[0], slice(frames[0], frames[-1] + 1)
+        alone = np.where(chosen[own, None, None], rotations[own], np.nan)
+        smooth = smooth_rotations(alone, rate, cutoff)[frames - first]
+    else:
+        smooth = smooth[frames]
     phases = tuple(
         (int(a), int(b))
         for a, b in np.searchsorted(frames, np.reshape(runs(movement.moving), (-1, 2)))

@@ -40,8 +40,9 @@ def model_for(
 
 
 _REMEDY = (
-    "say which marker sits on which segment: 'kinesphere model FILE --segments SEGMENTS "
-    "-o MODEL.json', then pass --model MODEL.json"
+    "if the person wears one of these layouts without some limbs, name it with --model: limbs "
+    "without markers are left out; else say which marker sits on which segment: 'kinesphere model "
+    "FILE --segments SEGMENTS -o MODEL.json', then pass --model MODEL.json"
 )
 
 

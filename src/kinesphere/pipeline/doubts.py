@@ -22,13 +22,13 @@ def with_checks(recording: Recording) -> Recording:
     Raises
     ------
     BadRecording
-        If the body has a size no body has.
+        If the body has a size no body has, or a marker a place no marker has.
     """
     found = [f for f in check_recording(recording) if f.severity != "note"]
     low, high = IMPOSSIBLE
     for finding in found:
-        height = dict(finding.numbers).get("height_m")
-        if finding.rule == "unit" and height is not None and not low <= height <= high:
+        height = dict(finding.numbers).get("height_m", low)
+        if finding.severity == "error" or not low <= height <= high:
             raise BadRecording(f"{finding.what}: {finding.remedy}")
     if not found:
         return recording

@@ -77,9 +77,9 @@ def solve(
     with clock.stage("orientation"):
         oriented = with_checks(orient(labelled, chosen, settings.orientation))
     with clock.stage("skeleton"):
-        fitted = fit_skeleton(oriented, chosen, settings.skeleton)
+        motion = fit_skeleton(oriented, chosen, settings.skeleton)
     with clock.stage("normalization"):
-        motion = normalize(fitted, settings.normalization, facing)
+        motion = normalize(motion, settings.normalization, facing)
     with clock.stage("parameterization"):
         reuse = _skeleton(calibration_from)
         if doubts := calibration_doubts(motion, calibration, reuse):

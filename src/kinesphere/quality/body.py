@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from kinesphere.data import Array, Recording, TopologicalModel
+from kinesphere.geometry.vectors import is_seen, lengths
 
 HEAD = (
     *("FHD", "BHD", "HD", "HEAD", "ARIEL", "HDF", "HDB"),
@@ -27,6 +28,9 @@ TOES = ("TOE", "TOE5", "MT1", "MT2", "MT5", "FM1", "FM5", "FTF", "BIGTOE", "SMAL
 HEELS = ("HEE", "HEEL", "HEL", "FCC", "CAL", "FTB")
 ANKLES = ("ANK", "ANKLE", "FAL", "ANL", "LMAL")
 KNEES = ("KNE", "KNEE", "FLE", "LFC")
+
+ENOUGH_FRAMES = 6000
+"""Frames, evenly spread, that tell which way is up, how tall and which way round a body is."""
 
 _SIDED = re.compile(r"(?:(?P<side>[LR])(?:EFT|IGHT)?[_. ]?)?(?P<core>.*)", re.DOTALL)
 
@@ -58,6 +62,17 @@ class Body:
     def side(self, side: str, names: Iterable[str]) -> Array | None:
         """Return the middle of one side's markers, ``L`` or ``R``, as ``middle`` does."""
         return self.middle(*(side + name for name in names))
+
+
+def thinned(recording: Recording, most: int) -> Recording:
+    """Return every n-th frame, at most ``most``: markers and labels alone, at a lower rate.
+
+    What holds of most of a long recording shows in some thousand of its frames.
+    """
+    step = -(-recording.n_frames // most)
+    if step <= 1:
+        return recording
+    return Recording(recording.markers[::step], recording.labels, recording.rate / step)
 
 
 def find_bodies(recording: Recording) -> tuple[Body, ...]:
@@ -112,7 +127,7 @@ def labelled_columns(recording: Recording) -> list[int]:
 
 def mean_seen(points: Array) -> Array:
     """Return the mean over markers of what is seen, (n_frames, n, 3) → (n_frames, 3)."""
-    seen = np.isfinite(points).all(axis=2, keepdims=True)
+    seen = is_seen(points)[..., None]
     with np.errstate(invalid="ignore"):
         return np.asarray(np.where(seen, points, 0.0).sum(axis=1) / seen.sum(axis=1))
 
@@ -120,4 +135,4 @@ def mean_seen(points: Array) -> Array:
 def unit(vectors: Array) -> Array:
     """Return vectors divided by their length, (..., 3); NaN where that is zero."""
     with np.errstate(invalid="ignore"):
-        return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
+        return np.asarray(vectors / lengths(vectors)[..., None])

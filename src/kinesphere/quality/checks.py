@@ -5,7 +5,9 @@ from collections.abc import Callable, Iterable, Iterator
 import numpy as np
 
 from kinesphere.data import Recording
+from kinesphere.geometry.vectors import lengths
 from kinesphere.quality.body import (
+    ENOUGH_FRAMES,
     HEAD,
     HEELS,
     SHOULDERS,
@@ -13,16 +15,19 @@ from kinesphere.quality.body import (
     Body,
     find_bodies,
     labelled_columns,
+    thinned,
 )
 from kinesphere.quality.findings import Finding
 from kinesphere.quality.marker_checks import (
     check_at_zero,
     check_coincident,
     check_constant,
+    check_far,
     check_gaps,
     check_jumps,
     check_never_seen,
 )
+from kinesphere.quality.swaps import check_swaps
 
 BODY_HEIGHT = (0.3, 2.5)
 """m between feet and head (or shoulders), from a crouching child to a giant on tiptoe."""
@@ -53,11 +58,13 @@ def check_recording(recording: Recording) -> tuple[Finding, ...]:
     rules: Iterable[Callable[[Recording], Iterator[Finding]]] = (
         _one_frame,
         _unit,
+        check_far,
         check_never_seen,
         check_at_zero,
         check_constant,
         check_coincident,
         check_jumps,
+        check_swaps,
         _empty_frames,
         check_gaps,
     )
@@ -78,6 +85,7 @@ def _one_frame(recording: Recording) -> Iterator[Finding]:
 
 
 def _unit(recording: Recording) -> Iterator[Finding]:
+    recording = thinned(recording, ENOUGH_FRAMES)
     heights = [h for body in find_bodies(recording) if np.isfinite(h := _height(body))]
     low, high = BODY_HEIGHT
     for height in heights:
@@ -110,8 +118,9 @@ def _height(body: Body) -> float:
     upper = shoulders if head is None else head
     if upper is None or feet is None:
         return float("nan")
-    lengths = np.linalg.norm(upper - feet, axis=1)
-    return float(np.median(lengths[np.isfinite(lengths)])) if np.isfinite(lengths).any() else np.nan
+    found = lengths(upper - feet)
+    found = found[np.isfinite(found)]
+    return float(np.median(found)) if len(found) else np.nan
 
 
 def _empty_frames(recording: Recording) -> Iterator[Finding]:

@@ -5,7 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from kinesphere.data import Array, Recording
-from kinesphere.quality.body import labelled_columns
+from kinesphere.geometry.vectors import is_seen, lengths
+from kinesphere.quality.body import labelled_columns, thinned
 from kinesphere.quality.findings import Finding
 from kinesphere.quality.gaps import runs
 
@@ -19,6 +20,8 @@ LONGEST_STEP = 1.0
 """s; over a longer gap a mean speed says nothing."""
 SAME_PLACE = 1e-3
 """m; two markers are 9 mm and more across."""
+FARTHEST = 1e5
+"""m; what lies farther out was never measured: 32-bit floats tell it to 8 mm at best."""
 STILL = 1e-6
 """m; a real marker jitters by a hundred times as much."""
 SAMPLED_FRAMES = 300
@@ -39,12 +42,29 @@ def check_never_seen(recording: Recording) -> Iterator[Finding]:
         )
 
 
+def check_far(recording: Recording) -> Iterator[Finding]:
+    """Find positions that no camera ever saw."""
+    markers = recording.markers
+    farthest = np.fmax(np.fmax.reduce(markers), -np.fmin.reduce(markers)).max(axis=1)
+    for c in np.flatnonzero(farthest > FARTHEST):
+        frame = int((np.abs(markers[:, c]) > FARTHEST).any(axis=1).argmax())
+        yield Finding(
+            "far",
+            "error",
+            f"{recording.labels[c]} is {farthest[c]:.3g} m away in frame "
+            f"{recording.first_frame + frame}: no position",
+            "take such positions out, or check the length unit of the file",
+            markers=(recording.labels[c],),
+            frame=recording.first_frame + frame,
+        )
+
+
 def check_at_zero(recording: Recording) -> Iterator[Finding]:
     """Find markers at the exact origin: missing ones that some exporters write as zero."""
-    zero = (recording.markers == 0).all(axis=2)
     for c in labelled_columns(recording):
-        if zero[:, c].any():
-            n, first = int(zero[:, c].sum()), int(zero[:, c].argmax())
+        zero = recording.markers[:, c, 0] == 0
+        if zero.any() and (zero := zero & (recording.markers[:, c, 1:] == 0).all(axis=1)).any():
+            n, first = int(zero.sum()), int(zero.argmax())
             yield Finding(
                 "at-zero",
                 "warning",
@@ -59,26 +79,31 @@ def check_at_zero(recording: Recording) -> Iterator[Finding]:
 
 def check_constant(recording: Recording) -> Iterator[Finding]:
     """Find markers that stand still for all their life while others move."""
-    labelled = labelled_columns(recording)
-    seen = recording.seen[:, labelled]
-    points = recording.markers[:, labelled]
-    enough = seen.sum(axis=0) >= max(2.0, recording.rate)  # a second of it
-    high = np.where(seen[..., None], points, -np.inf).max(axis=0, initial=-np.inf)
-    low = np.where(seen[..., None], points, np.inf).min(axis=0, initial=np.inf)
-    still = enough & ((high - low) < STILL).all(axis=1)
-    if not (enough & ~still).any():
+    often = recording.seen.sum(axis=0) >= max(2.0, recording.rate)  # a second of it
+    enough = [c for c in labelled_columns(recording) if often[c]]
+    few = thinned(recording, SAMPLED_FRAMES)  # who moves in these is asked no more
+    still = [c for c in enough if _stands(few.markers[:, c]) and _stands(recording.markers[:, c])]
+    if len(still) == len(enough):
         return  # a statue: nothing to compare with
-    for i in np.flatnonzero(still):
-        label = recording.labels[labelled[i]]
-        if not (points[seen[:, i], i] == 0).all():
-            yield Finding(
-                "constant",
-                "warning",
-                f"{label} never moves while others do",
-                "leave it out, or label the trial again",
-                markers=(label,),
-                frame=recording.first_frame + int(seen[:, i].argmax()),
-            )
+    # at zero a marker is missing, and told so
+    still = [c for c in still if recording.markers[recording.seen[:, c], c].any()]
+    if still:
+        labels = tuple(recording.labels[c] for c in still)
+        first = min(int(recording.seen[:, c].argmax()) for c in still)
+        yield Finding(
+            "constant",
+            "warning",
+            f"{', '.join(labels)} never move{'s' * (len(still) == 1)} while others do",
+            "label the trial again, or leave out what does not belong to the person",
+            markers=labels,
+            frame=recording.first_frame + first,
+        )
+
+
+def _stands(points: Array) -> bool:
+    """Return whether a marker stays where it is wherever it is seen, (n_frames, 3) m."""
+    points = points[is_seen(points)]
+    return len(points) == 0 or bool((np.ptp(points, axis=0) < STILL).all())
 
 
 def check_coincident(recording: Recording) -> Iterator[Finding]:
@@ -88,7 +113,7 @@ def check_coincident(recording: Recording) -> Iterator[Finding]:
     frames = np.unique(np.linspace(0, recording.n_frames - 1, wanted).astype(int))
     points = recording.markers[frames][:, labelled]
     for i in range(len(labelled) - 1):
-        distances = np.linalg.norm(points[:, i + 1 :] - points[:, i : i + 1], axis=2)
+        distances = lengths(points[:, i + 1 :] - points[:, i : i + 1])
         together = np.isfinite(distances).sum(axis=0)
         same = (distances < SAME_PLACE).sum(axis=0)  # NaN compares as False
         for j in np.flatnonzero((same > 0) & (2 * same >= together)):
@@ -111,7 +136,7 @@ def check_jumps(recording: Recording) -> Iterator[Finding]:
         if len(at) < 2:
             continue
         lasts = np.diff(at) / recording.rate
-        steps = np.linalg.norm(np.diff(recording.markers[at, c], axis=0), axis=1)
+        steps = lengths(np.diff(recording.markers[at, c], axis=0))
         speeds: Array = np.where(lasts <= LONGEST_STEP, steps / lasts, 0.0)
         fast = np.flatnonzero(speeds > FASTEST)
         if len(fast) == 0:
@@ -137,6 +162,8 @@ def check_gaps(recording: Recording) -> Iterator[Finding]:
     labelled = labelled_columns(recording)
     seen = recording.seen[:, labelled]
     missing = ~seen & seen.any(axis=1, keepdims=True)  # frames without anybody are told once
+    if not missing.any():
+        return
     columns, starts, stops = runs(missing)
     shares = missing.mean(axis=0)
     for i in np.flatnonzero(shares):

@@ -14,10 +14,11 @@ from kinesphere.data import (
     TopologicalModel,
     UpAxis,
     check_settings,
+    given_away,
     setting,
     settings_as_json,
 )
-from kinesphere.quality.body import find_bodies, find_long_axes
+from kinesphere.quality.body import ENOUGH_FRAMES, find_bodies, find_long_axes, thinned
 from kinesphere.quality.chirality import Chirality, find_chirality
 from kinesphere.quality.up_axis import judge_up
 from kinesphere.quality.upright import find_evidence
@@ -79,8 +80,9 @@ def orient(
         its own, customary labels do.
     """
     settings = settings or OrientationSettings()
-    bodies = find_bodies(recording)
-    evidence = find_evidence(recording, find_long_axes(recording, model, bodies))
+    few = thinned(recording, ENOUGH_FRAMES)
+    bodies = find_bodies(few)
+    evidence = find_evidence(few, find_long_axes(few, model, bodies))
     wanted = None if settings.up == "auto" else settings.up
     judgement = judge_up(evidence, recording.up, wanted)
     chirality = find_chirality(bodies)
@@ -121,7 +123,11 @@ def world_from_up(up: UpAxis, mirrored: bool = False) -> Array:
 def _turned(markers: Array, turn: Array) -> Array:
     """Permute and negate coordinates: exact, where a matrix product would turn -0 and NaN."""
     source = np.abs(turn).argmax(axis=1)
-    return np.asarray(markers[..., source] * turn[np.arange(3), source])
+    if (turn == np.eye(3)).all():
+        return markers
+    turned: Array = np.take(markers, source, axis=-1)
+    turned *= turn[np.arange(3), source]
+    return given_away(turned)
 
 
 def _judge_mirror(chirality: Chirality, wanted: str) -> tuple[bool, tuple[str, ...]]:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from kinesphere.data import Array, Codes, JointFlag, Mask, Skeleton, Solution
+from kinesphere.data import Array, Codes, Joint, JointFlag, Mask, Skeleton, Solution
 from kinesphere.report.packing import pack
 
 SCREEN_RATE = 60.0
@@ -57,6 +57,7 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
         },
         "moving": [runs(column) for column in parameters.moving[shown].T],
         "flags": [_flag_runs(column) for column in parameters.flags[shown].T],
+        "measured_s": [_measured(solution, joint) for joint in solution.skeleton.joints],
     }
 
 
@@ -64,6 +65,15 @@ def runs(mask: Mask) -> list[list[int]]:
     """Return [first, end) of every stretch of True in a mask (n_frames,)."""
     edges = np.flatnonzero(np.diff(np.r_[False, np.asarray(mask, dtype=bool), False].astype(int)))
     return [[int(a), int(b)] for a, b in edges.reshape(-1, 2)]
+
+
+def _measured(solution: Solution, joint: Joint) -> list[list[float]]:
+    """Return start and end in s of the movements that a joint's axes were found from."""
+    steps = [step for step in solution.history if step.name == "parameterization"]
+    if not steps or joint.axes_source != "movement":
+        return []
+    joints: Any = steps[-1].findings.get("joints", {})
+    return [list(span) for span in joints.get(joint.name, {}).get("phases_s", [])]
 
 
 def _flag_runs(flags: Codes) -> dict[str, list[list[int]]]:

@@ -6,8 +6,9 @@ import numpy as np
 
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.rigid import into_frame
+from kinesphere.geometry.vectors import is_seen
 from kinesphere.skeleton.averages import mean_seen, median_seen
-from kinesphere.skeleton.body import Body, robust_rms, seen
+from kinesphere.skeleton.body import Body, robust_rms
 
 CLEARLY = 0.6
 """A limb adopts a marker that wanders in it less than this share of what it does in any other."""
@@ -52,7 +53,7 @@ def find_adoptions(
 def _straying(body: Body, marker: Array) -> float:
     """Return how far a marker strays in a limb, m rms; infinite if it is far or hardly seen."""
     local = into_frame(body.rotations, body.shifts, marker[:, None])
-    if seen(local).mean() < SEEN:
+    if is_seen(local).mean() < SEEN:
         return np.inf
     usual = median_seen(local)
     if np.linalg.norm(usual - mean_seen(body.shape)) > NEAR:

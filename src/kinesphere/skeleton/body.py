@@ -4,8 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from kinesphere.data import Array, Mask
+from kinesphere.data import Array
 from kinesphere.geometry.rigid import RigidFit, fit_rigid, fit_shape, into_frame, pose_covariance
+from kinesphere.geometry.vectors import lengths
 
 NOISE = 0.001
 """m, least noise a point's weight reckons with: no three points take the whole fit."""
@@ -94,7 +95,7 @@ def measure_shape(
         if shape is None or not np.isfinite(shape).all():
             return None
         fit = fit_rigid(shape, points, weights, min_spread=min_spread)
-        residual = np.linalg.norm(into_frame(fit.rotations, fit.shifts, points) - shape, axis=2)
+        residual = lengths(into_frame(fit.rotations, fit.shifts, points) - shape)
         # the fit itself takes up six of the coordinates: what is left looks smaller than the noise
         if noise is None:
             last, known = known, robust_rms(residual) * np.sqrt(3 * n / max(3 * n - 6, 1))
@@ -115,8 +116,3 @@ def robust_rms(residuals: Array) -> Array:
         if len(known):
             rms[i] = np.sqrt(np.mean(known[: max(1, int(0.95 * len(known) + 0.5))] ** 2) / 3)
     return rms
-
-
-def seen(points: Array) -> Mask:
-    """Return where points are seen, (..., 3) → (...)."""
-    return np.asarray(np.isfinite(points).all(axis=-1))

@@ -1,10 +1,8 @@
 """A labelled recording in, a measured skeleton and its motion out."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 import kinesphere
 from kinesphere.data import (
@@ -16,6 +14,7 @@ from kinesphere.data import (
     Skeleton,
     Step,
     TopologicalModel,
+    given_away,
     settings_as_json,
 )
 from kinesphere.errors import BadRecording
@@ -31,7 +30,6 @@ from kinesphere.skeleton.tree import find_tree
 DEFAULT = SkeletonSettings()
 POOR = 0.03
 """m, rms residual from which on markers are no body: soft tissue leaves 22 mm at most."""
-_A = TypeVar("_A", bound=NDArray[Any])
 
 
 def fit_skeleton(
@@ -120,20 +118,14 @@ def fit_skeleton(
     history = (*recording.history, step)
     return Motion(
         skeleton=Skeleton(limbs, tuple(described[limb] for limb in tree.limbs[1:]), history),
-        rotations=_given_away(solved.rotations),
-        origins=_given_away(solved.shifts),
-        residuals=_given_away(solved.residuals),
-        flags=_given_away(solved.flags),
+        rotations=given_away(solved.rotations),
+        origins=given_away(solved.shifts),
+        residuals=given_away(solved.residuals),
+        flags=given_away(solved.flags),
         rate=recording.rate,
         first_frame=recording.first_frame,
         history=history,
     )
-
-
-def _given_away(array: _A) -> _A:
-    """Return an array nobody writes to any more: containers take it without a copy."""
-    array.flags.writeable = False
-    return array
 
 
 def _number(value: float) -> Json:

@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation, Slerp
 from kinesphere.data import Array, Codes, Mask, PoseFlag
 from kinesphere.geometry.rigid import fit_rigid, out_of_frame, tells_pose
 from kinesphere.geometry.rotations import rotation_between
-from kinesphere.skeleton.body import NOISE, Body, seen
+from kinesphere.geometry.vectors import is_seen
+from kinesphere.skeleton.body import NOISE, Body
 from kinesphere.skeleton.body_axes import unit
 
 RELEASE = 0.75
@@ -91,7 +92,7 @@ def fit_poses(
         fit = fit_rigid(local, world, weights, min_spread=min_spread)
         poses.rotations[at] = fit.rotations
         poses.shifts[at] = fit.shifts
-        alone = tells_pose(body.shape, seen(markers), min_spread=min_spread)
+        alone = tells_pose(body.shape, is_seen(markers), min_spread=min_spread)
         flags = np.where(alone, PoseFlag.MEASURED, PoseFlag.JOINT_AIDED)
         poses.flags[at] = np.where(fit.fitted, flags, PoseFlag.UNSEEN)
     return poses
@@ -132,7 +133,7 @@ def aim(
         towards = unit(own[:, m] - centre)
         base = parent.rotations @ body.rest
         open_ = (
-            (poses.flags == PoseFlag.UNSEEN) & seen(towards) & np.isfinite(base).all(axis=(1, 2))
+            (poses.flags == PoseFlag.UNSEEN) & is_seen(towards) & np.isfinite(base).all(axis=(1, 2))
         )
         if not open_.any():
             continue

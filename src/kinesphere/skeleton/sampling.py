@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array
+from kinesphere.geometry.vectors import is_seen
 
 JUMP = 0.05
 """m, most a marker's step between frames counts: a ghost's jump is no motion."""
@@ -57,7 +58,7 @@ def spread_frames(
 def _step_lengths(markers: Array) -> Array:
     """Return the mean step of the markers, less what they have in common, (n, m, 3) → (n-1,) m."""
     steps = np.diff(markers, axis=0)
-    both = np.asarray(np.isfinite(steps).all(axis=2))
+    both = is_seen(steps)
     if not both.all():
         steps = np.where(both[..., None], steps, 0.0)
     seen = np.maximum(both.sum(axis=1), 1)

@@ -126,14 +126,13 @@ def _helpers(
 
 def residuals(body: Body, own: Array, poses: Poses) -> Array:
     """Return the rms distance of a limb's markers from where its pose puts them, (n_frames,) m."""
-    rms = np.full(len(own), np.nan)
+    rms, markers = np.full(len(own), np.nan), np.ones(own.shape[1])
     for start in range(0, len(own), BLOCK):
         at = slice(start, start + BLOCK)
         off = own[at] - out_of_frame(poses.rotations[at], poses.shifts[at], body.shape)
         square = np.einsum("nmi,nmi->nm", off, off)
         known = np.isfinite(square)
-        count = known.sum(axis=1)
-        total = np.where(known, square, 0.0).sum(axis=1)
+        count, total = known @ markers, np.where(known, square, 0.0) @ markers
         rms[at] = np.where(count > 0, np.sqrt(total / np.maximum(count, 1)), np.nan)
     return rms
 

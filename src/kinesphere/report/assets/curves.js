@@ -139,6 +139,11 @@ class Chart {
   }
   paintRuns(context, floor) {
     const { margin, theme, scene } = this;
+    context.fillStyle = theme.measured;
+    for (const [start, end] of scene.measured_s[this.index]) {
+      const [a, b] = [this.x(start), this.x(end)];
+      context.fillRect(a, margin.top - 6, Math.max(1, b - a), floor - margin.top + 6);
+    }
     for (const [name, runs] of Object.entries(scene.flags[this.index]))
       for (const [first, end] of runs) {
         const [a, b] = [this.x(first / scene.rate), this.x(end / scene.rate)];

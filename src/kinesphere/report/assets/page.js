@@ -8,6 +8,7 @@ function themeFromStyles() {
   return {
     text: read("text"), dim: read("dim"), faint: read("faint"), card: read("card"),
     rule: read("rule"), zero: read("zero"), grid: read("grid"), accent: read("accent"),
+    measured: read("measured"),
     shadow: read("shadow"), outline: read("outline"), marker: read("marker"),
     series: ["axis1", "axis2", "axis3", "twist", "residual"].map(read),
     frame: ["frame-x", "frame-y", "frame-z"].map(read),

@@ -1,0 +1,21 @@
+"""Points in space, many at once: which are seen, and how long vectors are. Arrays only.
+
+NumPy's reductions over an axis of three cost ten times what a product with three ones does.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_ONES = np.ones(3)
+
+
+def is_seen(points: Array) -> NDArray[np.bool_]:
+    """Return where points are seen, (..., 3) → (...): NaN in any coordinate is not seen."""
+    return np.asarray(np.isfinite(points @ _ONES))
+
+
+def lengths(vectors: Array) -> Array:
+    """Return the lengths of vectors, (..., 3) → (...), in their unit; NaN stays NaN."""
+    return np.asarray(np.sqrt(np.einsum("...i,...i->...", vectors, vectors)))
