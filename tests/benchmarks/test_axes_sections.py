@@ -171,6 +171,10 @@ def test_every_estimator_answers():
     errors = run("90°", "clean", 1000)
     assert errors["as delivered"] == pytest.approx(errors["phase-log-pca"], abs=0.3)
     assert max(errors["as delivered"]) < 1.0
+
+
+@pytest.mark.slow
+def test_free_motion_without_twist_and_noise_tells_its_axes():
     assert max(free_motion.run("20 s without twist", "clean", 3000)["universal-joint"]) < 0.1
 
 
