@@ -57,7 +57,8 @@ def find_default_frames(
     DegenerateMotion
         If no sample shows the body's axes.
     """
-    position, warnings = _position(samples, settings)
+    angles = posture_angles(samples, settings.template)
+    position, warnings = _position(samples, angles, settings)
     bodies = proposal.root_from_body
     cost = np.where(np.isfinite(bodies).all(axis=(1, 2)), position.cost, np.inf)
     if not np.isfinite(cost).any():
@@ -69,7 +70,7 @@ def find_default_frames(
     if settings.frames == "many" and not proposal.only_best:
         chosen = cost <= cost[best] + _margin(samples, position, best, cost[best], settings)
     mean = robust_mean_rotations(bodies[chosen][:, None])[0]
-    measured = position.terms | posture_angles(samples, settings.template)
+    measured = position.terms | angles
     terms = {name: float(values[best]) for name, values in measured.items()}
     return DefaultFrames(
         method=proposal.method,
@@ -103,14 +104,15 @@ def _margin(
 
 
 def _position(
-    samples: Samples, settings: NormalizationSettings
+    samples: Samples, angles: dict[str, Array], settings: NormalizationSettings
 ) -> tuple[PositionCost, tuple[str, ...]]:
     if samples.joints.shape[1] < JOINTS_OF_A_PLANE:
-        return posture_cost(samples, settings), ()  # whatever is left of it: speed if nothing else
+        # whatever is left of it: speed if nothing else
+        return posture_cost(samples, settings, angles), ()
     if settings.position == "paper":
         return paper_cost(samples, settings), ()
-    if posture_angles(samples, settings.template):
-        return posture_cost(samples, settings), ()
+    if angles:
+        return posture_cost(samples, settings, angles), ()
     return paper_cost(samples, settings), (
         "no limb has a name that a posture could be read from; the default position was sought by "
         "the paper's cost, which takes stretched poses of any kind",

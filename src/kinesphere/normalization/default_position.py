@@ -33,15 +33,23 @@ class PositionCost:
     """True where a cost of 0 is a perfect default position, whatever the other frames are like."""
 
 
-def posture_cost(samples: Samples, settings: NormalizationSettings) -> PositionCost:
+def posture_cost(
+    samples: Samples, settings: NormalizationSettings, angles: dict[str, Array] | None = None
+) -> PositionCost:
     """Cost of a posture on named limbs: each term is 1 where it leaves its tolerance.
 
     ``(trunk tilt/15°)² + (largest arm angle/30°)² + (largest thigh angle/30°)² + (largest knee
     flexion/20°)² + (plane distance/.085 span)² + (speed/.11 spans a second)²``. A limb that the
     skeleton lacks has no term; one that a frame does not show counts 1. On free motion this finds
     standing frames where the paper's cost takes overhead and kicking poses.
+
+    Parameters
+    ----------
+    samples, settings
+    angles
+        What `posture_angles` returns, where that is known already.
     """
-    angles = posture_angles(samples, settings.template)
+    angles = posture_angles(samples, settings.template) if angles is None else angles
     scales = {
         "trunk_tilt_deg": settings.trunk_tilt,
         "arm_angle_deg": settings.arm_angle,
