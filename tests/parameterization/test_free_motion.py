@@ -68,18 +68,18 @@ def samples_of(joint):
 
 @pytest.mark.slow
 def test_twist_is_told_from_swing_by_its_course(rng):
-    seeds = rng.integers(2**31, size=3)
+    seeds = rng.integers(2**31, size=4)
     errors = {True: [], False: []}
     for seed in seeds:
         joint = make_free_motion(
-            np.random.default_rng(seed), CONES["60–120°"], NOISES["OU 1°"], twist=10.0, seconds=60.0
+            np.random.default_rng(seed), CONES["60–120°"], NOISES["OU 1°"], twist=20.0, seconds=60.0
         )
         for refine, found in errors.items():
             settings = AxesSettings(method="universal-joint", refine=refine)
             proximal = find_axes(samples_of(joint), 2, settings)[1]
             found.append(float(line_angles(proximal, joint.axes[1])))
-    assert np.median(errors[True]) < 3.0  # deg
-    assert np.median(errors[True]) < 0.7 * np.median(errors[False])
+    assert np.median(errors[True]) < 5.0  # deg
+    assert np.median(errors[True]) < 0.5 * np.median(errors[False])
 
 
 @pytest.mark.slow
