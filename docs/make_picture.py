@@ -33,7 +33,7 @@ FILES = (
     ("motion.osim .mot", "OpenSim, with these axes"),
     ("summary.json", "settings, findings, warnings"),
 )
-_SCRIPTS = ("unpack.js", "space.js", "figure.js", "player.js", "curves.js")
+SCRIPTS = ("unpack.js", "space.js", "figure.js", "player.js", "curves.js")
 _CHROMIUM = "--headless=new --no-sandbox --disable-gpu --use-angle=swiftshader \
 --enable-unsafe-swiftshader --disable-quic --no-first-run --disable-background-networking \
 --disable-component-update --disable-sync --hide-scrollbars --virtual-time-budget=5000 \
@@ -105,25 +105,31 @@ def main() -> int:
     performance = make_performance(np.random.default_rng(1), layout="cmu41")
     recording = spoil_with_noise(performance.recording, np.random.default_rng(2))
     solution = solve(recording, calibration=performance.calibration)
+    html = page_html(solution, performance.calibration[1])
+    photograph(html, WIDTH, HEIGHT, PICTURE, arguments.chromium)
+    return 0
+
+
+def photograph(html: str, width: int, height: int, picture: Path, chromium: str) -> None:
+    """Write what a page of some CSS pixels looks like, twice as many pixels wide and high."""
     with tempfile.TemporaryDirectory() as folder:
-        page, picture = Path(folder) / "page.html", Path(folder) / "picture.png"
-        page.write_text(page_html(solution, performance.calibration[1]), encoding="utf-8")
+        page, shot = Path(folder) / "page.html", Path(folder) / "picture.png"
+        page.write_text(html, encoding="utf-8")
         subprocess.run(
             [
-                arguments.chromium,
+                chromium,
                 *_CHROMIUM.split(),
                 f"--user-data-dir={folder}/profile",
-                f"--window-size={WIDTH},{HEIGHT}",
-                f"--screenshot={picture}",
+                f"--window-size={width},{height}",
+                f"--screenshot={shot}",
                 page.as_uri(),
             ],
             check=True,
             capture_output=True,
             timeout=120,
         )
-        PICTURE.parent.mkdir(exist_ok=True)
-        shutil.copyfile(picture, PICTURE)
-    return 0
+        picture.parent.mkdir(exist_ok=True)
+        shutil.copyfile(shot, picture)
 
 
 def page_html(solution: Solution, free_from_s: float) -> str:
@@ -143,11 +149,11 @@ def page_html(solution: Solution, free_from_s: float) -> str:
         for name in JOINTS
     )
     listed = "".join(f"<li><b>{name}</b><span>{what}</span></li>" for name, what in FILES)
-    helpers = _asset("page.js").partition("\nasync function start")[0]
-    scripts = "\n".join([*map(_asset, _SCRIPTS), helpers, _DRAW])
+    helpers = asset("page.js").partition("\nasync function start")[0]
+    scripts = "\n".join([*map(asset, SCRIPTS), helpers, _DRAW])
     return (
         '<!doctype html><meta charset="utf-8">'
-        f"<style>{_asset('page.css')}{_STYLE % (WIDTH, HEIGHT)}</style>"
+        f"<style>{asset('page.css')}{_STYLE % (WIDTH, HEIGHT)}</style>"
         '<div class="picture">'
         f"{''.join(map(_viewport, ('Labelled markers', 'Measured skeleton')))}"
         '<div class="panel"><h2>Angles about this person’s own axes</h2>'
@@ -183,7 +189,8 @@ def stride_frame(solution: Solution, free_from_s: float) -> int:
     return int(free.start + np.nanargmax(np.where(walking, apart[free], 0.0)))
 
 
-def _asset(name: str) -> str:
+def asset(name: str) -> str:
+    """Return a file of the report."""
     return (files("kinesphere.report") / "assets" / name).read_text(encoding="utf-8")
 
 

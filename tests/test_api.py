@@ -49,7 +49,7 @@ def test_importing_everything_touches_nothing(tmp_path):
 
 def test_every_name_is_there():
     names = "read write solve Settings report_html Recording Motion Parameters Skeleton Solution"
-    more = "TopologicalModel KinesphereError motion_from_parameters __version__"
+    more = "TopologicalModel KinesphereError motion_from_parameters Edit apply_edits __version__"
     for name in [*names.split(), *more.split()]:
         assert getattr(kinesphere, name) is not None
         assert name in dir(kinesphere)

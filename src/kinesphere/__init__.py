@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from kinesphere.data import Solution as Solution
     from kinesphere.data import TopologicalModel as TopologicalModel
     from kinesphere.data import motion_from_parameters as motion_from_parameters
+    from kinesphere.data.edits import Edit as Edit
+    from kinesphere.editing import apply_edits as apply_edits
     from kinesphere.errors import KinesphereError as KinesphereError
     from kinesphere.io import read as read
     from kinesphere.io import write as write
@@ -41,6 +43,8 @@ _ROOMS = {
         "Analog Event Joint Limb Motion Output Parameters Recording Skeleton Solution "
         "TopologicalModel motion_from_parameters"
     ),
+    "data.edits": "Edit",
+    "editing": "apply_edits",
     "errors": "KinesphereError",
     "io": "read write",
     "pipeline": "Settings solve",

@@ -6,6 +6,7 @@ import typer
 
 from kinesphere.cli.convert import convert
 from kinesphere.cli.demo import demo
+from kinesphere.cli.edit import edit
 from kinesphere.cli.info import info
 from kinesphere.cli.learn import model
 from kinesphere.cli.settings import settings
@@ -48,5 +49,5 @@ def kinesphere(
         typer.echo(context.get_help())
 
 
-for command in (demo, info, solve, convert, model, settings):
+for command in (demo, info, solve, edit, convert, model, settings):
     app.command()(command)

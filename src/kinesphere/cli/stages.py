@@ -53,6 +53,11 @@ def _orientation(found: dict[str, Any], _: dict[str, Any]) -> str:
     return text + ("; mirrored, turned right" if found.get("mirrored") else "")
 
 
+def _editing(found: dict[str, Any], _: dict[str, Any]) -> str:
+    joints = ", ".join(f"{joint} in {n:,} frames" for joint, n in found["frames"].items())
+    return f"{len(found['edits'])} edits: {joints}"
+
+
 def source_in_words(source: object) -> str:
     """Return what told which way is up: the file, the body, the user, or nothing."""
     return "assumed" if source in (None, "assumed") else f"from the {source}"
@@ -116,4 +121,5 @@ _WORDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], str]] = {
     "skeleton": _skeleton,
     "normalization": _normalization,
     "parameterization": _parameterization,
+    "editing": _editing,
 }

@@ -10,6 +10,8 @@ from kinesphere.io.c3d import read_c3d as read_c3d
 from kinesphere.io.c3d import write_c3d as write_c3d
 from kinesphere.io.csv import read_csv as read_csv
 from kinesphere.io.csv import write_csv as write_csv
+from kinesphere.io.edits_toml import read_edits as read_edits
+from kinesphere.io.edits_toml import write_edits as write_edits
 from kinesphere.io.limbs_csv import write_limbs as write_limbs
 from kinesphere.io.model_json import read_model as read_model
 from kinesphere.io.model_json import write_model as write_model
