@@ -1,0 +1,130 @@
+"""Bodies and joints as points in the world: what proportions and postures are read off."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.geometry.algebraic_centres import score_centre, sphere_centre
+from kinesphere.geometry.rigid import into_frame, out_of_frame
+from kinesphere.skeleton.averages import mean_seen, median_seen
+from kinesphere.skeleton.discovery.joint_tree import JointCosts, Members
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """Bodies and where they meet, in some frames of the recording."""
+
+    beside: tuple[tuple[int, ...], ...]
+    """Of each body, those it meets."""
+    middles: Array
+    """(n_sample, n_bodies, 3) m, middle of each body's markers that are seen."""
+    markers: tuple[Array, ...]
+    """Of each body, (n_sample, n_markers, 3) m."""
+    joints: Mapping[frozenset[int], Array]
+    """Two bodies that meet → (n_sample, 3) m."""
+
+    def joint(self, a: int, b: int) -> Array:
+        """Return where two bodies meet, (n_sample, 3) m."""
+        return self.joints[frozenset((a, b))]
+
+    def chain(self, start: int, towards: int) -> tuple[int, ...]:
+        """Return the longest way outward from one body through a neighbour, the latter first."""
+        beyond = [other for other in self.beside[towards] if other != start]
+        ways = [self.chain(towards, other) for other in beyond]
+        # of equal ways the one with more markers: toes before a loose strap
+        best = max(ways, key=lambda way: (len(way), sum(self._size(b) for b in way)), default=())
+        return (towards, *best)
+
+    def _size(self, body: int) -> int:
+        return int(self.markers[body].shape[1])
+
+    def far_end(self, body: int, towards: int) -> Array:
+        """Return the marker of a body that is farthest from a joint of it, (n_sample, 3) m."""
+        away = np.linalg.norm(self.markers[body] - self.joint(body, towards)[:, None], axis=2)
+        usual = median_seen(away)
+        return self.markers[body][:, int(np.nan_to_num(usual, nan=-1.0).argmax())]
+
+    def ends(self, root: int, chain: tuple[int, ...]) -> list[Array]:
+        """Return the joints along a chain and its far end, len(chain) + 1 of (n_sample, 3) m."""
+        before = (root, *chain[:-1])
+        points = [self.joint(a, b) for a, b in zip(before, chain, strict=True)]
+        return [*points, self.far_end(chain[-1], before[-1])]
+
+
+def make_figure(
+    costs: JointCosts,
+    bodies: Sequence[Members],
+    edges: Sequence[tuple[int, int]],
+    shared: Mapping[frozenset[int], Sequence[int]],
+) -> Figure:
+    """Return the figure that edges make of bodies.
+
+    Parameters
+    ----------
+    costs
+        Knows the markers and the poses.
+    bodies
+        Columns of each body's markers.
+    edges
+        Pairs of bodies that meet.
+    shared
+        Two bodies → columns of the markers at their joint.
+    """
+    beside: list[list[int]] = [[] for _ in bodies]
+    joints = {}
+    for a, b in edges:
+        beside[a].append(b)
+        beside[b].append(a)
+        over = shared.get(frozenset((a, b)), ())
+        joints[frozenset((a, b))] = joint_place(costs, bodies[a], bodies[b], over)
+    clouds = tuple(costs.points[:, members] for members in bodies)
+    return Figure(
+        beside=tuple(tuple(sorted(others)) for others in beside),
+        middles=np.stack([mean_seen(cloud, axis=1) for cloud in clouds], axis=1),
+        markers=clouds,
+        joints=joints,
+    )
+
+
+def joint_place(costs: JointCosts, a: Members, b: Members, over: Sequence[int] = ()) -> Array:
+    """Return about where two bodies meet, (n_sample, 3) m; good to centimetres, for proportions.
+
+    The common point of both bodies' poses (SCoRE), or of one's pose and the spheres that the
+    other's markers are on; without poses amid the markers over the joint, or midway between the
+    nearest ones.
+    """
+    pose_a, pose_b = costs.pose(a), costs.pose(b)
+    if pose_a is None and pose_b is not None:
+        return joint_place(costs, b, a, over)
+    if pose_a is None or pose_b is None:
+        between = list(over) or list(_nearest(costs.points, a, b))
+        middle = mean_seen(costs.points[:, between], axis=1)
+        if pose_a is None:
+            return middle
+        local = into_frame(pose_a.rotations, pose_a.shifts, costs.points[:, b])
+        expected = median_seen(into_frame(pose_a.rotations, pose_a.shifts, middle[:, None])[:, 0])
+        if not np.isfinite(expected).all():
+            return np.asarray(middle)
+        centre = sphere_centre(local, expected, ridge=1e-2)
+        return out_of_frame(pose_a.rotations, pose_a.shifts, centre[None])[:, 0]
+    relative = np.swapaxes(pose_a.rotations, 1, 2) @ pose_b.rotations
+    shifts = into_frame(pose_a.rotations, pose_a.shifts, pose_b.shifts[:, None])[:, 0]
+    in_a, in_b, _ = score_centre(relative, shifts, ridge=1e-2)
+    carried = (
+        out_of_frame(pose.rotations, pose.shifts, centre[None])
+        for pose, centre in ((pose_a, in_a), (pose_b, in_b))
+    )
+    return mean_seen(np.concatenate(list(carried), axis=1), axis=1)
+
+
+def _nearest(points: Array, a: Members, b: Members) -> tuple[int, int]:
+    """Return the two markers of two bodies that are nearest to each other."""
+    ways = {(int(i), int(j)): usual_distance(points[:, i], points[:, j]) for i in a for j in b}
+    return min(ways, key=lambda pair: (np.nan_to_num(ways[pair], nan=np.inf), pair))
+
+
+def usual_distance(a: Array, b: Array) -> float:
+    """Return the median distance of two moving points in m, NaN if they are never seen together."""
+    return float(median_seen(np.linalg.norm(a - b, axis=-1)))
