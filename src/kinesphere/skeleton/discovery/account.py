@@ -79,9 +79,9 @@ def account_of(
         },
         "marker_confidence": {labels[m]: _short(float(confidence[m])) for m in range(len(labels))},
         "at_joints": {
-            labels[m]: f"{_name(limb_of, owner[m])} and "
-            f"{_name(limb_of, partition.belonging.neighbour[m])}"
+            labels[m]: limb_of[int(partition.belonging.neighbour[m])]
             for m in partition.shared
+            if int(owner[m]) in limb_of
         },
         "loose": [labels[m] for m in partition.loose],
         "ghosts": list(ghosts),
@@ -150,10 +150,6 @@ def _solved(partition: Partition, limb_of: dict[int, str]) -> int:
 def _edge(partition: Partition, parent: str, child: str, limb_of: dict[int, str]) -> Edge:
     ends = {body for body, limb in limb_of.items() if limb in (parent, child)}
     return next(edge for edge in partition.forest.edges if {edge.a, edge.b} == ends)
-
-
-def _name(limb_of: dict[int, str], body: int) -> str:
-    return limb_of.get(int(body), "another body")
 
 
 def _rms(values: Array) -> float:
