@@ -17,7 +17,7 @@ from kinesphere.pipeline.doubts import calibration_doubts, with_checks
 from kinesphere.pipeline.motion_alone import discovered, normalized_somehow
 from kinesphere.pipeline.settings import Settings
 from kinesphere.quality import orient
-from kinesphere.skeleton import fit_skeleton
+from kinesphere.skeleton import fill_markers, fit_skeleton
 
 Progress: TypeAlias = Callable[[str, int, int], None]
 """Called with the stage about to run, its number from 0, and how many there are."""
@@ -92,6 +92,9 @@ def solve(
         # markers that were found loose are not to be taken in again
         measured = settings.skeleton if given else replace(settings.skeleton, adopt_markers=False)
         fitted = fit_skeleton(oriented, chosen, measured)
+        if settings.skeleton.fill_markers:
+            oriented = fill_markers(oriented, fitted)
+            fitted = replace(fitted, history=(*fitted.history, oriented.history[-1]))
     with clock.stage("normalization"):
         aligned = normalize if given else normalized_somehow
         motion = aligned(fitted, settings.normalization, facing)

@@ -13,7 +13,7 @@ from kinesphere.geometry.algebraic_centres import score_centre, sphere_centre
 from kinesphere.geometry.rigid import RigidFit, into_frame
 from kinesphere.skeleton.body import measure_shape
 
-NEARNESS = 0.05
+NEARNESS = 0.01
 """Cost in m of each metre between a joint and the nearest markers: limbs meet where they are."""
 OUTLIER = 0.003
 """m, residual at which a sighting within its limb starts to be doubted."""

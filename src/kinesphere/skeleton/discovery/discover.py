@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinesphere.data import (
+    Array,
     JointModel,
     Landmark,
     Recording,
@@ -153,15 +154,18 @@ def _named(
     for m in partition.shared:
         pair = frozenset((int(owner[m]), int(partition.belonging.neighbour[m])))
         over.setdefault(pair, []).append(m)
+    places: dict[frozenset[int], Array] = {}
+
     best: tuple[float, Forest, tuple[int, ...], Names] | None = None
-    for forest, unlikely in similar_forests(partition.forest, partition.sizes, at):
+    for forest, unlikely in similar_forests(partition.forest, at):
         there = next(t for t in forest.trees if tree[0] in t)
         pairs = [(edge.a, edge.b) for edge in forest.edges if edge.a in there]
-        names = find_names(make_figure(costs, partition.bodies, pairs, over), there)
-        cost = names.cost + UNLIKELY * unlikely
+        figure = make_figure(costs, partition.bodies, pairs, over, places)
+        names = find_names(figure, there)
+        cost = names.cost + UNLIKELY * unlikely if names.given else np.inf
         if best is None or cost < best[0]:
             best = cost, forest, there, names
-    assert best is not None  # the forest itself is among them
+    assert best is not None  # the forest itself is the first
     _, forest, there, names = best
     return replace(partition, forest=forest), there, names
 
@@ -171,7 +175,7 @@ def _from_the_torso(partition: Partition, limb_of: dict[int, str]) -> Forest:
     for limb in ("pelvis", "trunk"):
         for body, name in limb_of.items():
             if name == limb and len(partition.bodies[body]) >= OWN_POSE:
-                return rerooted(partition.forest, body, partition.sizes)
+                return rerooted(partition.forest, body)
     return partition.forest
 
 

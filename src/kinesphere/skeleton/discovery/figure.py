@@ -7,9 +7,17 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.geometry.algebraic_centres import score_centre, sphere_centre
-from kinesphere.geometry.rigid import into_frame, out_of_frame
+from kinesphere.geometry.rigid import RigidFit, into_frame, out_of_frame
 from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.discovery.joint_tree import JointCosts, Members
+
+RIDGE = 1e-2
+"""How firmly a joint is held where its markers are, as a share of the motion: below a tenth of a
+radian the motion says less."""
+
+
+THINNED = 3
+"""Every so many frames of those joints were found on make a figure: a median needs no more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +66,7 @@ def make_figure(
     bodies: Sequence[Members],
     edges: Sequence[tuple[int, int]],
     shared: Mapping[frozenset[int], Sequence[int]],
+    places: dict[frozenset[int], Array] | None = None,
 ) -> Figure:
     """Return the figure that edges make of bodies.
 
@@ -71,15 +80,21 @@ def make_figure(
         Pairs of bodies that meet.
     shared
         Two bodies → columns of the markers at their joint.
+    places
+        Two bodies → where they meet, as far as it is known from other figures; added to.
     """
+    places = {} if places is None else places
     beside: list[list[int]] = [[] for _ in bodies]
     joints = {}
     for a, b in edges:
         beside[a].append(b)
         beside[b].append(a)
-        over = shared.get(frozenset((a, b)), ())
-        joints[frozenset((a, b))] = joint_place(costs, bodies[a], bodies[b], over)
-    clouds = tuple(costs.points[:, members] for members in bodies)
+        pair = frozenset((a, b))
+        if pair not in places:
+            over = shared.get(pair, ())
+            places[pair] = joint_place(costs, bodies[a], bodies[b], over)[::THINNED]
+        joints[pair] = places[pair]
+    clouds = tuple(costs.points[::THINNED, members] for members in bodies)
     return Figure(
         beside=tuple(tuple(sorted(others)) for others in beside),
         middles=np.stack([mean_seen(cloud, axis=1) for cloud in clouds], axis=1),
@@ -91,32 +106,38 @@ def make_figure(
 def joint_place(costs: JointCosts, a: Members, b: Members, over: Sequence[int] = ()) -> Array:
     """Return about where two bodies meet, (n_sample, 3) m; good to centimetres, for proportions.
 
-    The common point of both bodies' poses (SCoRE), or of one's pose and the spheres that the
-    other's markers are on; without poses amid the markers over the joint, or midway between the
-    nearest ones.
+    Amid the markers over the joint, or midway between the nearest ones of both bodies, unless the
+    motion says better: by the common point of both poses (SCoRE), or by the spheres that one body's
+    markers are on in the other's pose.
     """
     pose_a, pose_b = costs.pose(a), costs.pose(b)
     if pose_a is None and pose_b is not None:
         return joint_place(costs, b, a, over)
-    if pose_a is None or pose_b is None:
-        between = list(over) or list(_nearest(costs.points, a, b))
-        middle = mean_seen(costs.points[:, between], axis=1)
-        if pose_a is None:
-            return middle
+    middle = mean_seen(costs.points[:, list(over) or list(_nearest(costs.points, a, b))], axis=1)
+    if pose_a is None:
+        return middle
+    from_a = _seen_by(pose_a, middle)
+    if not np.isfinite(from_a).all():
+        return middle
+    if pose_b is None:
         local = into_frame(pose_a.rotations, pose_a.shifts, costs.points[:, b])
-        expected = median_seen(into_frame(pose_a.rotations, pose_a.shifts, middle[:, None])[:, 0])
-        if not np.isfinite(expected).all():
-            return np.asarray(middle)
-        centre = sphere_centre(local, expected, ridge=1e-2)
+        centre = sphere_centre(local, from_a, ridge=RIDGE)
         return out_of_frame(pose_a.rotations, pose_a.shifts, centre[None])[:, 0]
+    from_b = _seen_by(pose_b, middle)
     relative = np.swapaxes(pose_a.rotations, 1, 2) @ pose_b.rotations
-    shifts = into_frame(pose_a.rotations, pose_a.shifts, pose_b.shifts[:, None])[:, 0]
-    in_a, in_b, _ = score_centre(relative, shifts, ridge=1e-2)
+    other = out_of_frame(pose_b.rotations, pose_b.shifts, from_b[None])
+    shifts = into_frame(pose_a.rotations, pose_a.shifts, other)[:, 0] - from_a
+    in_a, in_b, _ = score_centre(relative, shifts, ridge=RIDGE)
     carried = (
         out_of_frame(pose.rotations, pose.shifts, centre[None])
-        for pose, centre in ((pose_a, in_a), (pose_b, in_b))
+        for pose, centre in ((pose_a, from_a + in_a), (pose_b, from_b + in_b))
     )
     return mean_seen(np.concatenate(list(carried), axis=1), axis=1)
+
+
+def _seen_by(pose: RigidFit, point: Array) -> Array:
+    """Return the usual place of a moving point in a body's frame, (n_sample, 3) m → (3,) m."""
+    return median_seen(into_frame(pose.rotations, pose.shifts, point[:, None])[:, 0])
 
 
 def _nearest(points: Array, a: Members, b: Members) -> tuple[int, int]:

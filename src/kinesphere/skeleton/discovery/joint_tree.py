@@ -1,8 +1,8 @@
 """Which bodies meet at joints: a spanning forest of joint costs, and the root of each tree."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +23,12 @@ DOUBTFUL = 0.15
 """Confidence of an edge below which another one is about as likely: wrong joints of the recordings
 at hand have at most .12."""
 
-MOST_SWAPPED = 6
-"""Doubtful edges that are tried with their rivals, the most doubtful ones."""
+SWAPPED = 0.3
+"""Confidence of an edge below which its rival is tried where that could make a person of a tree."""
+MOST_SWAPPED = 5
+"""Edges that are tried so, the most doubtful ones."""
+MOST_RIVALS = 3
+"""Rivals of each."""
 
 Members = NDArray[np.intp]
 Pair = tuple[int, int]
@@ -38,11 +42,9 @@ class Edge:
     b: int
     cost: float
     """m, how badly they look like neighbours."""
-    next_best: float = np.inf
+    next_best: float
     """m, cost of the best other joint that would hold the tree together without this one; infinite
     if there is none."""
-    instead: Pair | None = None
-    """The bodies of that joint."""
 
     @property
     def confidence(self) -> float:
@@ -59,6 +61,10 @@ class Forest:
     trees: tuple[tuple[int, ...], ...]
     """Bodies of each tree, root first, parents before children."""
     edges: tuple[Edge, ...]
+    costs: Mapping[Pair, float]
+    """Two bodies, the lower first → m, cost of a joint between them."""
+    sizes: tuple[int, ...]
+    """Markers of each body."""
 
     def parent(self, body: int) -> int | None:
         """Return the body's parent, None for a root."""
@@ -125,25 +131,11 @@ def find_forest(costs: JointCosts, bodies: Sequence[Members]) -> Forest:
     usual = float(np.median([between[pair] for pair in chosen])) if chosen else 0.0
     limit = max(FAR_BEYOND * usual, APART * costs.share)
     kept = [pair for pair in chosen if between[pair] <= limit]
-    edges = []
-    for pair in kept:
-        instead = _replacement(kept, pair, between, n)
-        next_best = np.inf if instead is None else between[instead]
-        edges.append(Edge(*pair, between[pair], next_best, instead))
-    return _rooted(edges, [len(members) for members in bodies])
+    return _forest(kept, between, tuple(len(members) for members in bodies))
 
 
-def similar_forests(
-    forest: Forest, sizes: Sequence[int], tree: int, most: int = 2
-) -> Iterator[tuple[Forest, float]]:
-    """Yield the forest, then those that differ in up to ``most`` doubtful edges of a tree.
-
-    Parameters
-    ----------
-    sizes
-        Markers of each body.
-    tree
-        Index of the tree.
+def similar_forests(forest: Forest, tree: int) -> Iterator[tuple[Forest, float]]:
+    """Yield the forest, then those that differ from it in one or two doubtful edges of a tree.
 
     Yields
     ------
@@ -154,28 +146,53 @@ def similar_forests(
     yield forest, 0.0
     inside = set(forest.trees[tree])
     doubtful = [
-        edge
+        _pair(edge)
         for edge in sorted(forest.edges, key=lambda edge: edge.confidence)
-        if edge.a in inside and edge.instead is not None and edge.confidence < DOUBTFUL
+        if edge.a in inside and edge.confidence < SWAPPED
     ][:MOST_SWAPPED]
-    for count in range(1, most + 1):
-        for swapped in combinations(doubtful, count):
-            kept = [edge for edge in forest.edges if edge not in swapped]
-            new = [
-                Edge(*edge.instead, edge.next_best, edge.cost, (edge.a, edge.b))
-                for edge in swapped
-                if edge.instead is not None
-            ]
-            together = _rooted([*kept, *new], sizes)
-            if len(together.trees) == len(forest.trees):  # else the swaps made a ring
-                yield together, sum(float(np.log(e.next_best / e.cost)) for e in swapped)
+    pairs, n = [_pair(edge) for edge in forest.edges], len(forest.sizes)
+    ways = {
+        pair: [
+            rival
+            for rival in _rivals(pairs, pair, forest.costs, n)[:MOST_RIVALS]
+            if forest.costs[rival] * (1 - SWAPPED) <= forest.costs[pair]
+        ]
+        for pair in doubtful
+    }
+    for count in (1, 2):
+        for given_up in combinations(doubtful, count):
+            for taken in product(*(ways[pair] for pair in given_up)):
+                kept = [pair for pair in pairs if pair not in given_up]
+                if len({*kept, *taken}) < len(pairs):
+                    continue
+                swapped = _forest([*kept, *taken], forest.costs, forest.sizes)
+                if len(swapped.trees) == len(forest.trees):  # else the two made a ring
+                    yield (
+                        swapped,
+                        sum(
+                            float(np.log(forest.costs[new] / forest.costs[old]))
+                            for old, new in zip(given_up, taken, strict=True)
+                        ),
+                    )
 
 
-def _replacement(
-    kept: Sequence[Pair], without: Pair, costs: dict[Pair, float], n: int
-) -> Pair | None:
-    """Return the cheapest other joint between the two sides that one edge holds together."""
-    rest = [pair for pair in kept if pair != without]
+def _pair(edge: Edge) -> Pair:
+    return (min(edge.a, edge.b), max(edge.a, edge.b))
+
+
+def _forest(pairs: Sequence[Pair], costs: Mapping[Pair, float], sizes: tuple[int, ...]) -> Forest:
+    edges = []
+    for pair in pairs:
+        rivals = _rivals(pairs, pair, costs, len(sizes))
+        edges.append(Edge(*pair, costs[pair], costs[rivals[0]] if rivals else np.inf))
+    return _rooted(edges, costs, sizes)
+
+
+def _rivals(
+    pairs: Sequence[Pair], without: Pair, costs: Mapping[Pair, float], n: int
+) -> list[Pair]:
+    """Return the other joints between the two sides that one holds together, cheapest first."""
+    rest = [pair for pair in pairs if pair != without]
     side, other = _reached(without[0], rest, n), _reached(without[1], rest, n)
     across = [
         pair
@@ -184,7 +201,7 @@ def _replacement(
         and np.isfinite(cost)
         and ((pair[0] in side and pair[1] in other) or (pair[1] in side and pair[0] in other))
     ]
-    return min(across, key=lambda pair: costs[pair], default=None)
+    return sorted(across, key=lambda pair: costs[pair])
 
 
 def _reached(start: int, edges: Sequence[Pair], n: int) -> dict[int, int]:
@@ -202,7 +219,7 @@ def _reached(start: int, edges: Sequence[Pair], n: int) -> dict[int, int]:
     return away
 
 
-def _rooted(edges: Sequence[Edge], sizes: Sequence[int]) -> Forest:
+def _rooted(edges: Sequence[Edge], costs: Mapping[Pair, float], sizes: tuple[int, ...]) -> Forest:
     plain = [(edge.a, edge.b) for edge in edges]
     n, left = len(sizes), set(range(len(sizes)))
     trees: list[tuple[int, ...]] = []
@@ -218,7 +235,7 @@ def _rooted(edges: Sequence[Edge], sizes: Sequence[int]) -> Forest:
             if edge.a in away
         ]
     trees.sort(key=lambda tree: (-sum(sizes[b] for b in tree), min(tree)))
-    return Forest(tuple(trees), tuple(turned))
+    return Forest(tuple(trees), tuple(turned), costs, sizes)
 
 
 def _root(tree: Sequence[int], edges: Sequence[Pair], sizes: Sequence[int]) -> int:
@@ -235,10 +252,10 @@ def _root(tree: Sequence[int], edges: Sequence[Pair], sizes: Sequence[int]) -> i
     return min(able, key=way_to_all)
 
 
-def rerooted(forest: Forest, root: int, sizes: Sequence[int]) -> Forest:
+def rerooted(forest: Forest, root: int) -> Forest:
     """Return the forest with another body as the root of its tree."""
     plain = [(edge.a, edge.b) for edge in forest.edges]
-    away = _reached(root, plain, len(sizes))
+    away = _reached(root, plain, len(forest.sizes))
     trees = tuple(tuple(away) if root in tree else tree for tree in forest.trees)
     edges = tuple(
         edge
@@ -246,4 +263,4 @@ def rerooted(forest: Forest, root: int, sizes: Sequence[int]) -> Forest:
         else replace(edge, a=edge.b, b=edge.a)
         for edge in forest.edges
     )
-    return Forest(trees, edges)
+    return replace(forest, trees=trees, edges=edges)

@@ -29,7 +29,12 @@ class Names:
     doubt: str = ""
     """Why there are no names, or not all; for a person."""
     cost: float = np.inf
-    """Of the reading as a person; infinite where there is none."""
+    """Of the likeliest reading as a person, convincing or not; infinite where there is none."""
+
+    @property
+    def given(self) -> bool:
+        """Whether any limb has a name."""
+        return bool(np.isfinite(self.confidence))
 
 
 def find_names(figure: Figure, tree: Sequence[int]) -> Names:
@@ -39,9 +44,12 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     elbows. Without sides pelvis, trunk and head keep their names and the rest is numbered.
     """
     found = find_person(figure, tree)
+    nobody = no_names(tree, "no person is seen in the tree of bodies; limbs are numbered")
     if found is None:
-        return no_names(tree, "no person is seen in the tree of bodies; limbs are numbered")
+        return nobody
     person, confidence = found
+    if not person.convincing:
+        return replace(nobody, cost=person.cost)
     account: dict[str, Json] = {
         "person": True,
         "tree_confidence": round(confidence, 3),

@@ -13,7 +13,7 @@ import numpy as np
 
 from kinesphere.skeleton.discovery.figure import Figure, usual_distance
 
-THIGH, SHANK, UPPER_ARM, FOREARM, FOOT = 0.245, 0.246, 0.186, 0.146, 0.12
+THIGH, SHANK, UPPER_ARM, FOREARM, FOOT, HAND = 0.245, 0.246, 0.186, 0.146, 0.12, 0.06
 HIPS, SHOULDERS, TRUNK, HEAD = 0.10, 0.23, 0.29, 0.42
 """Hip to hip, shoulder to shoulder, hips to shoulders, hips to the middle of the head."""
 MISSING = 4.0
@@ -51,15 +51,21 @@ class Person:
     """How many lengths were judged."""
 
     @property
+    def convincing(self) -> bool:
+        """Whether the proportions are those of a person."""
+        return self.cost <= LIKELY * self.lengths
+
+    @property
     def hips_at(self) -> int:
         """The body the legs hang from."""
         return self.trunk if self.pelvis is None else self.pelvis
 
 
 def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | None:
-    """Return the likeliest reading of a tree as a person and its confidence 0…1, or None.
+    """Return the likeliest reading of a tree as a person and its confidence 0…1.
 
-    The confidence compares with the best reading in which any body is another limb.
+    The confidence compares with the best reading in which any body is another limb. None where no
+    part of the tree can be two legs.
 
     Parameters
     ----------
@@ -73,8 +79,6 @@ def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | N
         return None
     readings.sort(key=lambda person: person.cost)
     best = readings[0]
-    if best.cost > LIKELY * best.lengths:
-        return None
     mine = _limbs(best)
     rival = next((p.cost for p in readings[1:] if _contradicts(_limbs(p), mine)), np.inf)
     return best, float(1 / (1 + np.exp(-(rival - best.cost) / SHARPNESS)))
@@ -103,11 +107,13 @@ def _arm_sets(figure: Figure, trunk: int, upper: list[int]) -> Iterator[tuple[_A
     chains = [chain for b in upper if len(chain := figure.chain(trunk, b)) > 1]
     for count in range(3):
         for chosen in combinations(chains, count):
-            ways = [
-                [(trunk, chain[:3]), *([(chain[0], chain[1:4])] if len(chain) > 2 else [])]
-                for chain in chosen
-            ]
-            yield from product(*ways)
+            yield from product(*(_ways(trunk, chain) for chain in chosen))
+
+
+def _ways(trunk: int, chain: tuple[int, ...]) -> list[_Arm]:
+    """Return how a chain can be an arm: with or without a shoulder blade, a hand, a tool in it."""
+    whole = [(trunk, chain[:3]), *([(chain[0], chain[1:4])] if len(chain) > 2 else [])]
+    return [*whole, *((at, arm[:2]) for at, arm in whole if len(arm) > 2)]
 
 
 def _judged(figure: Figure, person: Person, n_bodies: int) -> Person:
@@ -136,6 +142,8 @@ def _judged(figure: Figure, person: Person, n_bodies: int) -> Person:
     for arm in arms:
         off.append(_off(usual_distance(arm[0], arm[1]), UPPER_ARM * stature, 0.25))
         off.append(_off(usual_distance(arm[1], arm[2]), FOREARM * stature, 0.35))
+        if len(arm) > 3:
+            off.append(_off(usual_distance(arm[2], arm[3]), HAND * stature, 0.5))
     if len(arms) == 2:
         off.append(_off(usual_distance(arms[0][0], arms[1][0]), SHOULDERS * stature, 0.35))
         off.append(_off(usual_distance(arms[0][0], arms[0][1]), usual_distance(*arms[1][:2]), 0.15))
