@@ -1,7 +1,8 @@
 """Bodies and joints as points in the world: what proportions and postures are read off."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from kinesphere.geometry.rigid import RigidFit, into_frame, out_of_frame
 from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.discovery.joint_tree import JointCosts, Members
 
+Point: TypeAlias = tuple[Any, ...]
+"""A point by what it is: ("joint", a, b), ("far", body, neighbour), ("body", a) or ("amid", point,
+point…)."""
 RIDGE = 1e-2
 """How firmly a joint is held where its markers are, as a share of the motion: below a tenth of a
 radian the motion says less."""
@@ -32,6 +36,8 @@ class Figure:
     """Of each body, (n_sample, n_markers, 3) m."""
     joints: Mapping[frozenset[int], Array]
     """Two bodies that meet → (n_sample, 3) m."""
+    known: dict[tuple[Point, Point], float] = field(default_factory=dict)
+    """Lengths that were asked for: many readings of a tree ask for the same ones."""
 
     def joint(self, a: int, b: int) -> Array:
         """Return where two bodies meet, (n_sample, 3) m."""
@@ -54,11 +60,26 @@ class Figure:
         usual = median_seen(away)
         return self.markers[body][:, int(np.nan_to_num(usual, nan=-1.0).argmax())]
 
-    def ends(self, root: int, chain: tuple[int, ...]) -> list[Array]:
-        """Return the joints along a chain and its far end, len(chain) + 1 of (n_sample, 3) m."""
+    def ends(self, root: int, chain: tuple[int, ...]) -> list[Point]:
+        """Return the joints along a chain and its far end, len(chain) + 1 points."""
         before = (root, *chain[:-1])
-        points = [self.joint(a, b) for a, b in zip(before, chain, strict=True)]
-        return [*points, self.far_end(chain[-1], before[-1])]
+        joints: list[Point] = [("joint", *pair) for pair in zip(before, chain, strict=True)]
+        return [*joints, ("far", chain[-1], before[-1])]
+
+    def place(self, point: Point) -> Array:
+        """Return where a point is, (n_sample, 3) m."""
+        kind, *of = point
+        if kind == "amid":
+            return np.asarray(np.mean([self.place(p) for p in of], axis=0))
+        if kind == "body":
+            return self.middles[:, of[0]]
+        return self.joint(*of) if kind == "joint" else self.far_end(*of)
+
+    def length(self, a: Point, b: Point) -> float:
+        """Return the median distance of two points in m."""
+        if (a, b) not in self.known:
+            self.known[a, b] = usual_distance(self.place(a), self.place(b))
+        return self.known[a, b]
 
 
 def make_figure(

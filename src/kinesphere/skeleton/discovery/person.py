@@ -11,7 +11,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from kinesphere.skeleton.discovery.figure import Figure, usual_distance
+from kinesphere.skeleton.discovery.figure import Figure
 
 THIGH, SHANK, UPPER_ARM, FOREARM, FOOT, HAND = 0.245, 0.246, 0.186, 0.146, 0.12, 0.06
 HIPS, SHOULDERS, TRUNK, HEAD = 0.10, 0.23, 0.29, 0.42
@@ -119,8 +119,8 @@ def _ways(trunk: int, chain: tuple[int, ...]) -> list[_Arm]:
 def _judged(figure: Figure, person: Person, n_bodies: int) -> Person:
     """Return the reading with what its proportions cost, in squared standard deviations."""
     legs = [figure.ends(person.hips_at, leg) for leg in person.legs]
-    thighs = [usual_distance(leg[0], leg[1]) for leg in legs]
-    shanks = [usual_distance(leg[1], leg[2]) for leg in legs]
+    thighs = [figure.length(leg[0], leg[1]) for leg in legs]
+    shanks = [figure.length(leg[1], leg[2]) for leg in legs]
     stature = (sum(thighs) + sum(shanks)) / 2 / (THIGH + SHANK)
     if not stature > 0:
         return person
@@ -129,30 +129,31 @@ def _judged(figure: Figure, person: Person, n_bodies: int) -> Person:
         *(_off(length, SHANK * stature, 0.15) for length in shanks),
         _off(thighs[0], thighs[1], 0.1),
         _off(shanks[0], shanks[1], 0.1),
-        _off(usual_distance(legs[0][0], legs[1][0]), HIPS * stature, 0.4),
+        _off(figure.length(legs[0][0], legs[1][0]), HIPS * stature, 0.4),
     ]
     missing = 0.0
     for leg, ends in zip(person.legs, legs, strict=True):
         if len(leg) > 2:
-            off.append(_off(usual_distance(ends[2], ends[3]), FOOT * stature, 0.5))
+            off.append(_off(figure.length(ends[2], ends[3]), FOOT * stature, 0.5))
         else:
             missing += MISSING
-    hips = (legs[0][0] + legs[1][0]) / 2
+    hips = ("amid", legs[0][0], legs[1][0])
     arms = [figure.ends(at, arm) for at, arm in person.arms]
     for arm in arms:
-        off.append(_off(usual_distance(arm[0], arm[1]), UPPER_ARM * stature, 0.25))
-        off.append(_off(usual_distance(arm[1], arm[2]), FOREARM * stature, 0.35))
+        off.append(_off(figure.length(arm[0], arm[1]), UPPER_ARM * stature, 0.25))
+        off.append(_off(figure.length(arm[1], arm[2]), FOREARM * stature, 0.35))
         if len(arm) > 3:
-            off.append(_off(usual_distance(arm[2], arm[3]), HAND * stature, 0.5))
+            off.append(_off(figure.length(arm[2], arm[3]), HAND * stature, 0.5))
     if len(arms) == 2:
-        off.append(_off(usual_distance(arms[0][0], arms[1][0]), SHOULDERS * stature, 0.35))
-        off.append(_off(usual_distance(arms[0][0], arms[0][1]), usual_distance(*arms[1][:2]), 0.15))
+        off.append(_off(figure.length(arms[0][0], arms[1][0]), SHOULDERS * stature, 0.35))
+        uppers = [figure.length(arm[0], arm[1]) for arm in arms]
+        off.append(_off(uppers[0], uppers[1], 0.15))
     if arms:
-        shoulders = np.mean([arm[0] for arm in arms], axis=0)
-        off.append(_off(usual_distance(hips, shoulders), TRUNK * stature, 0.25))
+        shoulders = ("amid", *(arm[0] for arm in arms))
+        off.append(_off(figure.length(hips, shoulders), TRUNK * stature, 0.25))
     if person.head is not None:
-        middle = figure.middles[:, person.head]
-        off.append(_off(usual_distance(hips, middle), HEAD * stature, 0.2))
+        head = ("body", person.head)
+        off.append(_off(figure.length(hips, head), HEAD * stature, 0.2))
     missing += MISSING * (2 - len(arms)) + MISSING * (person.head is None)
     blades = sum(at != person.trunk for at, _ in person.arms)
     missing += EXTRA * blades + UNEXPLAINED * (n_bodies - blades - len(_limbs(person)))

@@ -36,8 +36,12 @@ class Sides:
 
 def find_sides(figure: Figure, person: Person) -> Sides | None:
     """Return which leg is the left one, in a right-handed world; None where nothing tells."""
-    legs = [figure.ends(person.hips_at, leg) for leg in person.legs]
-    arms = [figure.ends(at, arm) for at, arm in person.arms]
+
+    def places(root: int, chain: tuple[int, ...]) -> list[Array]:
+        return [figure.place(point) for point in figure.ends(root, chain)]
+
+    legs = [places(person.hips_at, leg) for leg in person.legs]
+    arms = [places(at, arm) for at, arm in person.arms]
     across = unit(legs[1][0] - legs[0][0])
     hips = (legs[0][0] + legs[1][0]) / 2
     top = _top(figure, person, arms)
