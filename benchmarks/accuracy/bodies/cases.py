@@ -27,7 +27,19 @@ from kinesphere.synthetic import (
 
 ROOT = Path(__file__).parents[3]
 FRAMES = 24_000
-PLATES = ("LB", "PV", "RUA", "LUA", "RFA", "LFA", "RTH", "LTH", "RSH", "LSH")
+PLATES = {
+    "LB": "trunk",
+    "PV": "pelvis",
+    "RUA": "right_upper_arm",
+    "LUA": "left_upper_arm",
+    "RFA": "right_forearm",
+    "LFA": "left_forearm",
+    "RTH": "right_thigh",
+    "LTH": "left_thigh",
+    "RSH": "right_shank",
+    "LSH": "left_shank",
+}
+"""First letters of a plate's markers → what it is strapped to."""
 GAIT_SEGMENTS = {
     frozenset(edge)
     for edge in (
@@ -100,7 +112,7 @@ def _by_label(path, limb_of, edges=frozenset()) -> Case:
 
 
 def _plate(label: str) -> str:
-    return next((plate for plate in PLATES if label.startswith(plate)), "")
+    return next((limb for plate, limb in PLATES.items() if label.startswith(plate)), "")
 
 
 def _cmu(name: str) -> Case:

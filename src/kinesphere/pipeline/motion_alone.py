@@ -10,8 +10,9 @@ from kinesphere.normalization import Facing, NormalizationSettings, normalize
 from kinesphere.pipeline.choice import why_no_model
 from kinesphere.skeleton import DiscoverySettings, SkeletonSettings, discover
 
-FRONT: Facing = "+x"
-"""Where a body faces that has no front of its own, a hand or a crane: conventions say x."""
+FRONTS: tuple[Facing, ...] = ("+x", "+z", "+y")
+"""Where a body faces that has no front of its own, a hand or a crane: x by convention, or the first
+of the world's axes that does not lie across its plane."""
 
 
 def discovered(
@@ -50,24 +51,38 @@ def normalized_somehow(
 ) -> Motion:
     """Normalize a motion that may have neither front nor enough joints for a body frame.
 
-    Where nothing tells a front and nobody said one, the body faces the world's +x, aloud.
+    Where nothing tells a front and nobody said one, the body faces an axis of the world, aloud.
+
+    Raises
+    ------
+    AmbiguousFacing, DegenerateMotion
+        If the facing that was asked for does not help, or none does.
     """
     try:
         return normalize(motion, settings, facing)
     except (AmbiguousFacing, DegenerateMotion) as missing:
         if facing is not None:
             raise
-        turned = normalize(motion, settings, FRONT)
+        turned, front = _facing_an_axis(motion, settings)
         step = Step(
             "front",
             warnings=(
-                f"the body has no front of its own, so it faces the world's {FRONT}: its frames "
+                f"the body has no front of its own, so it faces the world's {front}: its frames "
                 "and the signs of its angles mean nothing beyond this recording "
                 f"({_first(missing)})",
             ),
             version=__version__,
         )
         return replace(turned, history=(*turned.history, step))
+
+
+def _facing_an_axis(motion: Motion, settings: NormalizationSettings) -> tuple[Motion, Facing]:
+    for front in FRONTS[:-1]:
+        try:
+            return normalize(motion, settings, front), front
+        except AmbiguousFacing:
+            continue
+    return normalize(motion, settings, FRONTS[-1]), FRONTS[-1]
 
 
 def _first(error: Exception) -> str:
