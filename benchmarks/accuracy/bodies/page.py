@@ -263,4 +263,6 @@ def _n(value: float | None, unit: str) -> str:
     if value is None or not math.isfinite(value):
         return "–"
     gap = "" if unit in ("°", "×") else " "
+    if abs(value) < 0.005:
+        return f"0{gap}{unit}"
     return f"{value:.0f}{gap}{unit}" if value >= 100 else f"{value:.2g}{gap}{unit}"

@@ -8,6 +8,7 @@ import pytest
 from kinesphere.skeleton.discovery.joint_tree import (
     Edge,
     JointCosts,
+    contracted,
     find_forest,
     rerooted,
     similar_forests,
@@ -108,6 +109,17 @@ def test_similar_forests_swap_doubtful_edges_only_and_stay_trees(forest):
         assert own - edges_of(other) <= doubtful
         assert len(other.trees) == 1
         assert unlikely > 0
+
+
+def test_two_bodies_made_one_leave_the_rest_of_the_tree(forest):
+    edge = forest.edges[-1]
+    one = contracted(forest, edge.a, edge.b, forest.sizes)
+    assert edge.b not in one.trees[0]
+    assert len(one.trees[0]) == len(forest.trees[0]) - 1
+    assert len(one.edges) == len(forest.edges) - 1
+    for body in one.trees[0][1:]:
+        parent = forest.parent(body)
+        assert one.parent(body) == (edge.a if parent == edge.b else parent)
 
 
 def test_costs_do_not_depend_on_who_is_asked_first(recorded, true_bodies):

@@ -51,7 +51,7 @@ def account_of(
         if not limb_of.keys() & set(tree)
     ]
     return {
-        "bodies_found": len(bodies),
+        "bodies_found": _count(partition),
         "count_confidence": _short(partition.clustering.count_confidence),
         "trees": len(forest.trees),
         "within_bodies_mm": _mm(partition.usual),
@@ -112,7 +112,7 @@ def doubts_about(
     sure = partition.clustering.count_confidence
     if not count_given and sure < DOUBTFUL_COUNT:
         doubts.append(
-            f"{len(partition.bodies)} bodies were found, but their number hardly stands out "
+            f"{_count(partition)} bodies were found, but their number hardly stands out "
             f"(confidence {sure:.2f}); set discovery.bodies where it is known"
         )
     shaky = [
@@ -141,6 +141,10 @@ def doubts_about(
     if names.doubt:
         doubts.append(names.doubt)
     return tuple(doubts)
+
+
+def _count(partition: Partition) -> int:
+    return sum(size > 0 for size in partition.sizes)
 
 
 def _solved(partition: Partition, limb_of: dict[int, str]) -> int:

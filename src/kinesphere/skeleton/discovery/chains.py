@@ -30,7 +30,7 @@ def split_chains(labels: Labels, wander: Array, noise: float, ratio: float) -> L
         members = todo.pop()
         if len(members) > 2:
             a, b = _halves(members, wander)
-            if _widest(wander, members) > ratio * max(noise, _hinged(wander, a, b)):
+            if widest(wander, members) > ratio * max(noise, _hinged(wander, a, b)):
                 todo += [a, b]
                 continue
         bodies.append(members)
@@ -54,11 +54,12 @@ def _halves(members: Labels, wander: Array) -> tuple[Labels, Labels]:
 
 def _hinged(wander: Array, a: Labels, b: Labels) -> float:
     """Return the least steady distance in two bodies of which one lends the other a marker, m."""
-    lent = [max(_widest(wander, a), _widest(wander, np.append(b, marker))) for marker in a]
-    lent += [max(_widest(wander, b), _widest(wander, np.append(a, marker))) for marker in b]
+    lent = [max(widest(wander, a), widest(wander, np.append(b, marker))) for marker in a]
+    lent += [max(widest(wander, b), widest(wander, np.append(a, marker))) for marker in b]
     return min(lent)
 
 
-def _widest(wander: Array, members: Labels) -> float:
+def widest(wander: Array, members: Labels) -> float:
+    """Return the least steady distance within a body, m."""
     inner = wander[np.ix_(members, members)]
     return float(inner[np.isfinite(inner)].max(initial=0.0))

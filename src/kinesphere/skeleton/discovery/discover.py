@@ -31,6 +31,7 @@ from kinesphere.skeleton.discovery.names import Names, find_names, no_names
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
 from kinesphere.skeleton.discovery.rigidity import worth_grouping
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
+from kinesphere.skeleton.discovery.twigs import TORSO, without_twigs
 from kinesphere.skeleton.naming import joint_name
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import scaled, size_share
@@ -101,6 +102,8 @@ def discover(
     labels = tuple(recording.labels[c] for c in columns)
     _check_tree(partition, labels, settings.tree)
     partition, tree, names = _named(partition, costs, settings)
+    if settings.bodies is None:
+        partition, tree, names = without_twigs(partition, tree, names, settings, limits)
     forest = _from_the_torso(partition, names.limbs)
     tree = next(t for t in forest.trees if tree[0] in t)
     partition = replace(partition, forest=forest)
@@ -172,7 +175,7 @@ def _named(
 
 def _from_the_torso(partition: Partition, limb_of: dict[int, str]) -> Forest:
     """Let the tree hang from the pelvis, or from the trunk where it is the one that has a pose."""
-    for limb in ("pelvis", "trunk"):
+    for limb in TORSO:
         for body, name in limb_of.items():
             if name == limb and len(partition.bodies[body]) >= OWN_POSE:
                 return rerooted(partition.forest, body)

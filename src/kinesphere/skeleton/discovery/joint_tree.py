@@ -264,3 +264,18 @@ def rerooted(forest: Forest, root: int) -> Forest:
         for edge in forest.edges
     )
     return replace(forest, trees=trees, edges=edges)
+
+
+def contracted(forest: Forest, into: int, body: int, sizes: tuple[int, ...]) -> Forest:
+    """Return the forest with two bodies that meet made one; the second is in no tree any more."""
+
+    def renamed(other: int) -> int:
+        return into if other == body else other
+
+    edges = tuple(
+        replace(edge, a=renamed(edge.a), b=renamed(edge.b))
+        for edge in forest.edges
+        if {edge.a, edge.b} != {into, body}
+    )
+    trees = tuple(tuple(dict.fromkeys(map(renamed, tree))) for tree in forest.trees)
+    return replace(forest, trees=trees, edges=edges, sizes=sizes)

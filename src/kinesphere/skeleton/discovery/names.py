@@ -65,17 +65,17 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     given = _torso(person)
     if sides is None:
         doubt = "nothing tells left from right; arms and legs are numbered"
-        return Names(_numbered(given, tree), confidence, account, doubt, person.cost)
+        return Names(numbered(given, tree), confidence, account, doubt, person.cost)
     account |= {"sides_confidence": round(sides.confidence, 3)}
     account |= {f"sides_from_{name}": round(score, 2) for name, score in sides.scores.items()}
     given |= _sided(person, sides)
     sure = confidence * sides.confidence
-    return Names(_numbered(given, tree), sure, account, cost=person.cost)
+    return Names(numbered(given, tree), sure, account, cost=person.cost)
 
 
 def no_names(tree: Sequence[int], doubt: str = "") -> Names:
     """Return numbers for the bodies of a tree."""
-    return Names(_numbered({}, tree), np.nan, {"person": False}, doubt)
+    return Names(numbered({}, tree), np.nan, {"person": False}, doubt)
 
 
 def _torso(person: Person) -> dict[int, str]:
@@ -99,6 +99,7 @@ def _sided(person: Person, sides: Sides) -> dict[int, str]:
     return given
 
 
-def _numbered(given: dict[int, str], tree: Sequence[int]) -> dict[int, str]:
+def numbered(given: dict[int, str], tree: Sequence[int]) -> dict[int, str]:
+    """Return body of the tree → its name, or the next of ``limb_01``, ``limb_02``…, in order."""
     free = (f"limb_{k:02d}" for k in range(1, len(tree) + 1))
     return {body: given[body] if body in given else next(free) for body in tree}

@@ -1,6 +1,6 @@
 """Everything about bodies that motion tells before any limb is measured."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,13 @@ from kinesphere.skeleton.discovery.joint_markers import (
     resettle,
     usual_wander,
 )
-from kinesphere.skeleton.discovery.joint_tree import Forest, JointCosts, Members, find_forest
+from kinesphere.skeleton.discovery.joint_tree import (
+    Forest,
+    JointCosts,
+    Members,
+    contracted,
+    find_forest,
+)
 from kinesphere.skeleton.discovery.rigidity import Rigidity, measure_rigidity
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.settings import SkeletonSettings
@@ -94,6 +100,34 @@ def find_partition(
         clustering=clustering,
         bodies=tuple(bodies),
         loose=tuple(loose),
+        forest=forest,
+        belonging=belonging,
+        usual=usual,
+        shared=tuple(map(int, belonging.shared(usual, settings.shared_ratio))),
+    )
+
+
+def merged(
+    partition: Partition,
+    into: int,
+    body: int,
+    settings: DiscoverySettings,
+    limits: SkeletonSettings,
+) -> Partition:
+    """Return the partition with a body's markers on its neighbour; the body is left empty."""
+    bodies = list(partition.bodies)
+    bodies[into] = np.sort(np.concatenate([bodies[into], bodies[body]]))
+    bodies[body] = bodies[body][:0]
+    sizes = tuple(len(members) for members in bodies)
+    forest = contracted(partition.forest, into, body, sizes)
+    rigidity = partition.rigidity
+    usual = usual_wander(rigidity.wander, bodies) or rigidity.noise
+    belonging = measure_belonging(
+        rigidity, bodies, forest, limits.outlier_mm * 1e-3, limits.min_spread_mm * 1e-3
+    )
+    return replace(
+        partition,
+        bodies=tuple(bodies),
         forest=forest,
         belonging=belonging,
         usual=usual,
