@@ -15,13 +15,13 @@ FRAMES = 300
 """Frames that joints are looked for on."""
 APART = 0.06
 """m, least joint cost from which two bodies of a person's size may be no neighbours: on the
-recordings at hand real joints cost 3 to 38 mm, bodies of different people a tenth of their way."""
+recordings at hand joints cost up to 24 mm, bodies of different people a tenth of their way."""
 FAR_BEYOND = 3.0
 """Times the median cost of the joints from which on one is none."""
 
 DOUBTFUL = 0.15
-"""Confidence of an edge below which another one is about as likely: wrong joints of the recordings
-at hand have at most .12."""
+"""Confidence of an edge below which another one is called about as likely: 5 of 15 wrong joints of
+the recordings at hand have less, 11 less than twice that."""
 
 SWAPPED = 0.3
 """Confidence of an edge below which its rival is tried where that could make a person of a tree."""
