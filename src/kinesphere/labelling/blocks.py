@@ -1,0 +1,102 @@
+"""Exchanges of whole blocks of labels that distances can hardly tell from the truth.
+
+Two legs, two arms from the elbow on, a head turned round: each looks almost right by distances
+alone, and no exchange of two labels leads from one to the other.
+"""
+
+from collections.abc import Iterator
+from itertools import combinations, islice, permutations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array, TopologicalModel
+
+LARGEST_SEGMENT = 6
+"""Markers of a segment all of whose orders are looked at: 720. Of larger ones, those that exchange
+up to three pairs."""
+ALIKE = 0.25
+"""Relative rms difference of distances up to which an order of a segment's markers is a turn of
+it: a head is about twice as long as wide."""
+MOST_TURNS = 8
+"""Turns kept of one segment, the most alike first."""
+
+
+def block_moves(model: TopologicalModel, labels: tuple[str, ...], mean: Array) -> NDArray[np.int64]:
+    """Return permutations of labels, (n_moves, n_labels): label i gives its point to ``move[i]``.
+
+    Mirrored limbs from every joint outward, every segment mirrored by itself, the whole body
+    mirrored, and every segment turned on the spot.
+
+    Parameters
+    ----------
+    labels
+        In the order of the template.
+    mean : (n_labels, n_labels)
+        Mean distances, to tell which turns of a segment leave it alike.
+    """
+    at = {label: i for i, label in enumerate(labels)}
+    twin = np.arange(len(labels))
+    for left, right in model.mirror:
+        if left in at and right in at:
+            twin[at[left]], twin[at[right]] = at[right], at[left]
+    moves = [twin.copy()]
+    owned = {s.name: [at[x] for x in s.markers if x in at] for s in model.segments}
+    for joint in model.joints:
+        outward = [x for limb in _beyond(model, joint.child) for x in owned[limb]]
+        moves.append(_mirrored(outward, twin))
+    for own in owned.values():
+        moves.append(_mirrored(own, twin))
+        moves += _turns(own, mean)
+    unique = {move.tobytes(): move for move in moves if (move != np.arange(len(move))).any()}
+    return np.array(list(unique.values()), dtype=np.int64).reshape(-1, len(labels))
+
+
+def _beyond(model: TopologicalModel, limb: str) -> list[str]:
+    """Return a limb and all that hang from it."""
+    below = [limb]
+    for joint in model.joints_from_root:
+        if joint.parent in below:
+            below.append(joint.child)
+    return below
+
+
+def _mirrored(some: list[int], twin: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the exchange of these labels with their twins."""
+    move = np.arange(len(twin))
+    for label in some:
+        move[label], move[twin[label]] = twin[label], label
+    return move
+
+
+def _turns(own: list[int], mean: Array) -> list[NDArray[np.int64]]:
+    """Return the orders of one segment's markers that leave its distances about as they are."""
+    n = len(own)
+    if n < 2:
+        return []
+    inner = mean[np.ix_(own, own)]
+    size = np.nanmean(inner[~np.eye(n, dtype=bool)])
+    found = []
+    for order in _orders(n):
+        off = np.sqrt(np.nanmean((inner[np.ix_(order, order)] - inner) ** 2)) / size
+        if off <= ALIKE:
+            move = np.arange(len(mean))
+            move[own] = [own[x] for x in order]
+            found.append((off, order, move))
+    found.sort(key=lambda turn: turn[:2])
+    return [move for _, _, move in found[:MOST_TURNS]]
+
+
+def _orders(n: int) -> Iterator[tuple[int, ...]]:
+    """Yield orders of n markers, all but the first one."""
+    if n <= LARGEST_SEGMENT:
+        yield from islice(permutations(range(n)), 1, None)
+        return
+    pairs = list(combinations(range(n), 2))
+    for count in range(1, 4):
+        for some in combinations(pairs, count):
+            if len({x for pair in some for x in pair}) == 2 * count:
+                order = list(range(n))
+                for a, b in some:
+                    order[a], order[b] = b, a
+                yield tuple(order)
