@@ -15,9 +15,9 @@ from kinesphere.data import Array, TopologicalModel
 LARGEST_SEGMENT = 6
 """Markers of a segment all of whose orders are looked at: 720. Of larger ones, those that exchange
 up to three pairs."""
-ALIKE = 0.25
+ALIKE = 0.4
 """Relative rms difference of distances up to which an order of a segment's markers is a turn of
-it: a head is about twice as long as wide."""
+it: a head is about twice as long as wide, the front of a trunk lower than its back."""
 MOST_TURNS = 8
 """Turns kept of one segment, the most alike first."""
 
@@ -25,7 +25,7 @@ MOST_TURNS = 8
 def block_moves(model: TopologicalModel, labels: tuple[str, ...], mean: Array) -> NDArray[np.int64]:
     """Return permutations of labels, (n_moves, n_labels): label i gives its point to ``move[i]``.
 
-    Mirrored limbs from every joint outward, every segment mirrored by itself, the whole body
+    The first mirrors the whole body; it is the identity where nothing mirrors. Mirrored limbs from every joint outward, every segment mirrored by itself, the whole body
     mirrored, and every segment turned on the spot.
 
     Parameters
@@ -36,10 +36,7 @@ def block_moves(model: TopologicalModel, labels: tuple[str, ...], mean: Array) -
         Mean distances, to tell which turns of a segment leave it alike.
     """
     at = {label: i for i, label in enumerate(labels)}
-    twin = np.arange(len(labels))
-    for left, right in model.mirror:
-        if left in at and right in at:
-            twin[at[left]], twin[at[right]] = at[right], at[left]
+    twin = twins(model, labels)
     moves = [twin.copy()]
     owned = {s.name: [at[x] for x in s.markers if x in at] for s in model.segments}
     for joint in model.joints:
@@ -48,8 +45,19 @@ def block_moves(model: TopologicalModel, labels: tuple[str, ...], mean: Array) -
     for own in owned.values():
         moves.append(_mirrored(own, twin))
         moves += _turns(own, mean)
-    unique = {move.tobytes(): move for move in moves if (move != np.arange(len(move))).any()}
-    return np.array(list(unique.values()), dtype=np.int64).reshape(-1, len(labels))
+    unique = {move.tobytes(): move for move in moves[1:] if (move != np.arange(len(move))).any()}
+    unique.pop(twin.tobytes(), None)
+    return np.array([twin, *unique.values()], dtype=np.int64)
+
+
+def twins(model: TopologicalModel, labels: tuple[str, ...]) -> NDArray[np.int64]:
+    """Return the index of each label's twin on the other side, (n_labels,); else its own."""
+    at = {label: i for i, label in enumerate(labels)}
+    twin = np.arange(len(labels))
+    for left, right in model.mirror:
+        if left in at and right in at:
+            twin[at[left]], twin[at[right]] = at[right], at[left]
+    return twin
 
 
 def _beyond(model: TopologicalModel, limb: str) -> list[str]:

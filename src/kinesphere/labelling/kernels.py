@@ -16,6 +16,17 @@ Signs = NDArray[np.int8]
 
 _SOFT = 6.0
 """z / (1 + z / 6): no single pair, however wrong, outweighs six that fit."""
+BASE = 0.5
+"""Agreement of a quadruple that earns nothing: less is a cost, more a reward. With 0 labels that
+have many stable quadruples attract points of their neighbours that are missing, with 1 labels that
+have few of them do; both measure worse where markers are missing."""
+
+
+@kernel
+def _share(log_std: float) -> float:
+    """Return what the mean of a distance with this logarithm of its deviation may be off by."""
+    std = max(np.exp(log_std) - 0.01, 0.0)
+    return 0.6 * std * std
 
 
 @kernel
@@ -57,7 +68,8 @@ def pair_costs(
                     v = expected_variance[i, j] + variance[k, l]
                     x = (mean[k, l] - mu) ** 2 / (2 * v)
                     y = (log_std[k, l] - expected_log[i, j]) ** 2 / (2 * log_variance[i, j])
-                    cost = x / (1 + x / _SOFT) + y / (1 + y / _SOFT) + 0.5 * np.log(v / 0.01)
+                    usual = expected_variance[i, j] + _share(expected_log[i, j])
+                    cost = x / (1 + x / _SOFT) + y / (1 + y / _SOFT) + 0.5 * np.log(v / usual)
                     costs[k, i, l, j] = weight[k, l] * (cost - outlier)
 
 
@@ -82,7 +94,7 @@ def handed_energy(
     for q in only:
         a, b, c, d = holder[quads[q, 0]], holder[quads[q, 1]], holder[quads[q, 2]], holder[quads[q, 3]]
         if a >= 0 and b >= 0 and c >= 0 and d >= 0:
-            energy -= wanted[q] * handedness_of(table, a, b, c, d) / FULL
+            energy += BASE * abs(wanted[q]) - wanted[q] * handedness_of(table, a, b, c, d) / FULL
     return energy
 
 
@@ -193,7 +205,7 @@ def _without(
             continue
         a, b, c, d = holder[quads[q, 0]], holder[quads[q, 1]], holder[quads[q, 2]], holder[quads[q, 3]]
         if a >= 0 and b >= 0 and c >= 0 and d >= 0:
-            energy -= wanted[q] * handedness_of(table, a, b, c, d) / FULL
+            energy += BASE * abs(wanted[q]) - wanted[q] * handedness_of(table, a, b, c, d) / FULL
     return energy
 
 
@@ -239,7 +251,7 @@ def room_to_agree(
         only = of_label[i, : n_of_label[i]]
         room = handed_energy(holder, quads, wanted, table, only)
         for q in only:
-            room += abs(wanted[q])
+            room += (1 - BASE) * abs(wanted[q])
         room_of[i] = room
 
 
@@ -311,12 +323,14 @@ def least_changes(
     table: Signs,
     of_label: Indices,
     n_of_label: Indices,
+    into_free: float,
     least: Array,
     rival: Indices,
 ) -> None:
     """Fill how much the energy rises at least when a point loses its label to another, (n_points,).
 
-    ``rival`` is the label that would take its place.
+    ``rival`` is the label that would take its place; a rise into a label that nobody bears counts
+    ``into_free`` times.
     """
     n, m = costs.shape[0], costs.shape[1]
     terms = linear_terms(labels, costs)
@@ -333,6 +347,8 @@ def least_changes(
                 labels, holder, terms, costs, quads, wanted, table, of_label, n_of_label, room_of,
                 a, j, np.inf,
             )  # fmt: skip
+            if b < 0:
+                rise *= into_free
             if rise < least[a]:
                 least[a], rival[a] = rise, j
             if b >= 0 and rise < least[b]:

@@ -59,6 +59,7 @@ def match_labels(
         markers=recording.markers[:, kept] if dropped else recording.markers,
         labels=tuple(labels[column] for column in kept),
         residuals=None if recording.residuals is None else recording.residuals[:, kept],
+        confidence=None if recording.confidence is None else recording.confidence[kept],
         history=(*recording.history, step),
     )
 

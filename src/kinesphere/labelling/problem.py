@@ -16,10 +16,15 @@ from kinesphere.labelling import kernels
 from kinesphere.labelling.template import DEVIATION_FLOOR, DEVIATION_SHARE, Template
 
 HANDED = 0.15
-"""Reward of one quadruple that turns the right way, in nats; .05 to .3 measure alike."""
-UNKNOWN = 0.3
-"""Nats that a pair costs about which nothing is known, in the terms of the pairs' own cost: mean
-distance uniform over a third of the scale, logarithm of the deviation spread by 0.7."""
+"""Nats between a quadruple that turns the right way and one whose side is even; .05 to .3 measure
+alike where all markers are there, .15 better than .05 where some are missing."""
+UNKNOWN = 3.0
+"""Nats from which on a pair fits its labels worse than nothing does: right pairs have 1 on average,
+a point at a random place with a random spread 4 to 5."""
+INTO_FREE = 0.25
+"""What a nat counts that keeps a point from a label nobody bears. An exchange of two points must
+fit both of them worse; one that slides into the place of a missing neighbour is held by its own
+distances alone, and those differ between people."""
 FEWEST_FRAMES = 5
 """Frames together that make a pair count in full; one alone says nothing of a spread."""
 
@@ -69,7 +74,8 @@ class Problem:
         holder = self.holders(labels)
         held = np.flatnonzero((holder[self.quadruples] >= 0).all(axis=1))
         total = np.abs(self.wanted[held]).sum()
-        return -kernels.handed_energy(holder, *self.handed, held) / total if total else np.nan
+        energy = kernels.handed_energy(holder, *self.handed, held)
+        return kernels.BASE - energy / total if total else np.nan
 
     def holders(self, labels: Labels) -> Labels:
         """Return the point that bears each label, (n_labels,), −1 for none."""
@@ -128,6 +134,7 @@ class Problem:
             *self.handed,
             self.of_label,
             self.n_of_label,
+            INTO_FREE,
             least,
             rival,
         )

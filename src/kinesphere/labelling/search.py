@@ -6,7 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.labelling import kernels
-from kinesphere.labelling.problem import Labels, Problem
+from kinesphere.labelling.problem import INTO_FREE, Labels, Problem
 
 STEPS = 20_000
 """Exchanges tried in one annealing of 41 markers; in proportion to the square of their number."""
@@ -22,6 +22,12 @@ SHAKES = 100
 """Neighbourhoods shuffled at the end."""
 NEIGHBOURS = (4, 10)
 """Labels in one of them."""
+SLIDING = 6
+"""Nearest labels whose points might as well belong to a free one."""
+SETTLING = 10
+"""Labels around an exchange that settle anew."""
+ROUNDS = 10
+"""Most improvements followed while labels are doubted."""
 SEED = 20100517
 """Same input, same labels."""
 
@@ -35,6 +41,8 @@ class Found(NamedTuple):
     """Annealings made."""
     agreeing: int
     """How many of them ended here."""
+    rivals: tuple[tuple[float, Labels], ...]
+    """Energy and labels of where the others ended."""
 
 
 def find_labels(
@@ -69,7 +77,8 @@ def find_labels(
             break
     labels, energy = shake(problem, best[2], near, rng, nullable=nullable)
     labels, energy = exchange_blocks(problem, labels, moves, nullable=nullable)
-    return Found(labels, energy, len(ends), agreeing)
+    rivals = tuple((end[0], end[2]) for end in ends)
+    return Found(labels, energy, len(ends), agreeing, rivals)
 
 
 def exchange_blocks(
@@ -78,7 +87,7 @@ def exchange_blocks(
     """Return labels after exchanges of blocks, each followed by a descent, as long as that helps."""
     energy = problem.energy(labels)
     known = {labels.tobytes()}
-    while len(moves):
+    while True:
         best = None
         for tried in _promising(problem, labels, moves):
             changed = problem.descend(tried, nullable=nullable)
@@ -108,11 +117,14 @@ def _promising(problem: Problem, labels: Labels, moves: Labels) -> list[Labels]:
         tried = _moved(labels, moves[x])
         tried = _moved(tried, moves[y]) if y > x else tried
         found.append(_greedy(problem, tried, moves, energies[x, y]))
+    # a body taken for one that faces the other way: mirrored, and every segment turned
+    mirrored = _moved(labels, moves[0])
+    found.append(_greedy(problem, mirrored, moves[1:], problem.energy(mirrored)))
     return found
 
 
 def _greedy(problem: Problem, labels: Labels, moves: Labels, energy: float) -> Labels:
-    while True:
+    while len(moves):
         energies = np.empty(len(moves))
         every = np.arange(len(problem.quadruples))
         kernels.move_energies(labels, moves, problem.costs, *problem.handed, every, energies)
@@ -120,6 +132,7 @@ def _greedy(problem: Problem, labels: Labels, moves: Labels, energy: float) -> L
         if not energies[best] < energy - 1e-6:
             return labels
         labels, energy = _moved(labels, moves[best]), float(energies[best])
+    return labels
 
 
 def _moved(labels: Labels, move: Labels) -> Labels:
@@ -143,6 +156,62 @@ def shake(
         if reached < energy - 1e-6:
             labels, energy = changed, reached
     return labels, energy
+
+
+def doubt(
+    problem: Problem, labels: Labels, near: Labels, *, nullable: bool
+) -> tuple[Labels, float, Array]:
+    """Ask of every label what else could be, and go there if it is better.
+
+    Each point is given its best other label, and each free label each point nearby, while the
+    neighbours settle anew around it: chains of markers slide by one where one of them is missing.
+
+    Returns
+    -------
+    labels, energy, margins
+        Margins (n_points,): the least rise of energy found that changes a point's label.
+    """
+    energy = problem.energy(labels)
+    for _ in range(ROUNDS):
+        margins, rivals = problem.least_changes(labels)
+        tries = [(a, int(j)) for a, j in enumerate(rivals) if j >= 0]
+        for free in np.flatnonzero(problem.holders(labels) < 0):
+            held = problem.holders(labels)[near[free, 1:SLIDING]]
+            tries += [(int(a), int(free)) for a in held if a >= 0]
+        best = None
+        for a, j in tries:
+            changed = _settled(problem, labels, a, j, near, nullable=nullable)
+            reached = problem.energy(changed)
+            moved = changed != labels
+            same = (np.sort(changed) == np.sort(labels)).all()
+            rise = (reached - energy) * (1.0 if same else INTO_FREE)
+            margins[moved] = np.minimum(margins[moved], rise)
+            if reached < energy - 1e-6 and (best is None or reached < best[0]):
+                best = reached, changed
+        if best is None:
+            return labels, energy, margins
+        energy, labels = best[0], problem.descend(best[1], nullable=nullable)
+        energy = problem.energy(labels)
+    return labels, energy, margins
+
+
+def _settled(
+    problem: Problem, labels: Labels, a: int, j: int, near: Labels, *, nullable: bool
+) -> Labels:
+    """Return labels with point a bearing j whatever happens, its neighbours having settled."""
+    changed = labels.copy()
+    holder = problem.holders(labels)
+    old, b = labels[a], holder[j]
+    changed[a] = j
+    if b >= 0:
+        changed[b] = old
+    around = near[j, :SETTLING]
+    if old >= 0:
+        around = np.union1d(around, near[old, :SETTLING])
+    targets = around[around != j]
+    held = problem.holders(changed)[targets]
+    points = held[held >= 0]
+    return problem.descend(changed, nullable=nullable, points=points, targets=targets)
 
 
 def nearest_labels(mean: Array) -> Labels:
