@@ -7,6 +7,7 @@ import typer
 from kinesphere.cli.convert import convert
 from kinesphere.cli.demo import demo
 from kinesphere.cli.info import info
+from kinesphere.cli.label import label
 from kinesphere.cli.learn import model
 from kinesphere.cli.settings import settings
 from kinesphere.cli.solve import solve
@@ -48,5 +49,5 @@ def kinesphere(
         typer.echo(context.get_help())
 
 
-for command in (demo, info, solve, convert, model, settings):
+for command in (demo, info, label, solve, convert, model, settings):
     app.command()(command)

@@ -6,10 +6,12 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TypeAlias
 
+import numpy as np
+
 from kinesphere import __version__
 from kinesphere.data import Recording, Skeleton, Solution, Step, TopologicalModel
 from kinesphere.errors import BadRecording
-from kinesphere.labelling import match_labels
+from kinesphere.labelling import coverage, label, match_labels
 from kinesphere.normalization import Facing, normalize
 from kinesphere.parameterization import parameterize
 from kinesphere.pipeline.choice import model_for
@@ -42,7 +44,8 @@ def solve(
     recording
         As read: in the axes of its file.
     model
-        Which marker sits on which limb; the name of a built-in one; None to choose the built-in
+        Which marker sits on which limb; where no point bears one of its labels, they are given
+        first. Or the name of a built-in one; None to choose the built-in
         one that the recording covers, if any; ``"none"`` for motion alone.
     subject
         The label prefix of the person, where the recording holds several.
@@ -73,6 +76,13 @@ def solve(
     clock = _Clock(progress)
     with clock.stage("labelling"):
         chosen = model_for(recording, model, subject)
+        if subject is None and not coverage(recording, chosen):
+            recording = label(recording, chosen, settings.labelling)
+            if recording.confidence is None or np.isnan(recording.confidence).all():
+                raise BadRecording(
+                    f"no point has a label of model {chosen.name}, and none could be given: "
+                    + "; ".join(recording.history[-1].warnings)
+                )
         labelled = match_labels(recording, chosen, subject)
     with clock.stage("orientation"):
         oriented = with_checks(orient(labelled, chosen, settings.orientation))

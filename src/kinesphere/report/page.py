@@ -3,15 +3,13 @@
 import base64
 import hashlib
 import json
-from functools import cache
-from importlib.resources import files
 from typing import Any
 
-from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 import kinesphere
 from kinesphere.data import Solution
+from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.notices import names_of, notices
 from kinesphere.report.scene import scene_from_solution
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
@@ -35,8 +33,8 @@ def report_html(solution: Solution, title: str = "") -> str:
     """
     joints = joint_rows(solution)
     scene = scene_from_solution(solution)
-    script = Markup("\n".join(_asset(name) for name in _SCRIPTS))
-    page = _environment().from_string(_asset("page.html.j2"))
+    script = Markup("\n".join(asset(name) for name in _SCRIPTS))
+    page = environment().from_string(asset("page.html.j2"))
     return page.render(
         title=title or "Solved motion",
         version=kinesphere.__version__,
@@ -48,7 +46,7 @@ def report_html(solution: Solution, title: str = "") -> str:
         steps=step_cards(solution),
         stride=scene["stride"],
         shown_rate=f"{scene['rate']:g}",
-        style=Markup(_asset("page.css")),
+        style=Markup(asset("page.css")),
         script=script,
         # Only this very script may run: whatever a label smuggles in stays text.
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
@@ -60,15 +58,3 @@ def _json_for_script(found: Any) -> str:
     """Return JSON that cannot close the script element it stands in."""
     text = json.dumps(found, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
-
-
-@cache
-def _asset(name: str) -> str:
-    return (files("kinesphere.report") / "assets" / name).read_text(encoding="utf-8")
-
-
-@cache
-def _environment() -> Environment:
-    return Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
