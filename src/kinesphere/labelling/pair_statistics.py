@@ -69,7 +69,9 @@ class _Solved(NamedTuple):
     rivals: list[tuple[float, Labels]]
 
 
-def match_pair_statistics(points: Array, model: TopologicalModel) -> Match:
+def match_pair_statistics(
+    points: Array, model: TopologicalModel, start: Labels | None = None
+) -> Match:
     """Label points by the statistics of their distances and their handedness.
 
     Parameters
@@ -78,6 +80,9 @@ def match_pair_statistics(points: Array, model: TopologicalModel) -> Match:
         NaN where not seen; in any unit, axes and order of frames.
     model
         With statistics.
+    start : (n_points,)
+        Labels to start from, by index into the model's, −1 for none: they are improved and
+        completed rather than searched for.
 
     Raises
     ------
@@ -89,13 +94,27 @@ def match_pair_statistics(points: Array, model: TopologicalModel) -> Match:
     seen = np.isfinite(points).all(axis=2)
     if seen.any(axis=1).sum() < 2:
         return nothing(n_points, "one frame alone shows no motion to recognise markers by")
-    kept = _plausible(points, seen, layout.template.n)
+    kept = np.flatnonzero(seen.sum(axis=0) >= 2)
+    if start is None:
+        kept = _plausible(points, seen, layout.template.n)
     if len(kept) < LEAST_LABELS:
         return nothing(
             n_points, f"{len(kept)} markers are seen; {LEAST_LABELS} at least can be told apart"
         )
     found = signature(points[:, kept])
-    solved = _solve(found, layout)
+    if start is None:
+        solved = _solve(found, layout)
+    else:
+        back = np.full(len(model.labels) + 1, -1, dtype=np.int64)
+        back[layout.into] = np.arange(layout.template.n)
+        solved = _continued(found, layout, back[start[kept]])
+    return _match(solved, layout, kept, n_points, model.name)
+
+
+def _match(
+    solved: _Solved, layout: _Layout, kept: NDArray[np.intp], n_points: int, name: str
+) -> Match:
+    """Return the labels of a solved problem, unless they fit too badly to be given."""
     confidence = _confidence(solved, layout)
     labels = np.full(n_points, -1, dtype=np.int64)
     sure = np.zeros(n_points)
@@ -108,12 +127,12 @@ def match_pair_statistics(points: Array, model: TopologicalModel) -> Match:
     agreement = solved.problem.agreement(solved.labels)
     if n < LEAST_LABELS or fit < WORST_FIT:
         return match.refused(
-            f"the markers do not move like those of {model.name}: the best labels fit by "
+            f"the markers do not move like those of {name}: the best labels fit by "
             f"{fit:.2f} nats a pair, {WORST_FIT} at least are needed"
         )
-    if agreement < LEAST_AGREEMENT:
+    if not agreement >= LEAST_AGREEMENT:
         return match.refused(
-            f"left and right of {model.name} cannot be told: {agreement:.2f} of the handedness "
+            f"left and right of {name} cannot be told: {agreement:.2f} of the handedness "
             f"agrees, {LEAST_AGREEMENT} at least is needed"
         )
     return match
@@ -165,6 +184,27 @@ def _solve(found: Signature, layout: _Layout) -> _Solved:
         scale = rescaled
         problem = problem_of(found, scale, template)
         labels, energy, rivals = *_refined(problem, labels, layout), []
+    return _finished(found, scale, layout, problem, labels, energy, rivals)
+
+
+def _continued(found: Signature, layout: _Layout, labels: Labels) -> _Solved:
+    scale = _scale_by_labels(found, labels, layout.template)
+    problem = problem_of(found, scale, layout.template)
+    labels, energy = _refined(problem, labels, layout)
+    return _finished(found, scale, layout, problem, labels, energy, [])
+
+
+def _finished(
+    found: Signature,
+    scale: float,
+    layout: _Layout,
+    problem: Problem,
+    labels: Labels,
+    energy: float,
+    rivals: list[tuple[float, Labels]],
+) -> _Solved:
+    """Try unpaired markers on the other side, then doubt every label."""
+    template = layout.template
     for label in np.flatnonzero(layout.twin == np.arange(template.n)):
         other = problem_of(found, scale, template.with_other_side(int(label), layout.twin))
         if other.energy(labels) < energy - 1e-6:

@@ -13,11 +13,12 @@ from scipy.optimize import linear_sum_assignment
 
 from kinesphere.data import Array
 
-GAP_S = 0.1
-"""s, longest gap that a straight prediction bridges: markers turn their way within 0.2 s."""
-GATE = 0.02
+GAP_S = 0.03
+"""s, longest gap that a straight prediction bridges. Over longer ones a neighbour that comes into
+view is easily taken for the marker that went; the body's distances join those better."""
+GATE = 0.012
 """m, farthest a prediction may miss; grows by ``ACCELERATION`` with the gap."""
-ACCELERATION = 40.0
+ACCELERATION = 20.0
 """m/s², of hands and feet in fast movements: a prediction over t misses by half of it times t²."""
 VELOCITY_S = 0.05
 """s over which a velocity is measured."""

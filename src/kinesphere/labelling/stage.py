@@ -24,7 +24,7 @@ LABELLERS: dict[str, Labeller] = {
     "similarity-tree": match_similarity_tree,
 }
 """Method name → labeller."""
-DOUBTFUL = 0.5
+DOUBTFUL = 0.25
 """Confidence below which a person should look."""
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.labelling.matching import Labeller, Match, nothing
 from kinesphere.labelling.own_distances import OwnDistances, costs_of, own_distances
+from kinesphere.labelling.pair_statistics import match_pair_statistics
 from kinesphere.labelling.runs import Run, Track, points_of, runs_of, tracks_of
 
 WINDOWS_S = (16.0, 8.0, 4.0)
@@ -23,23 +24,23 @@ LONGER = 0.75
 COVERED = 0.5
 """Share of a window that a track must fill to be looked at there."""
 TRIED = 5
-"""Windows labelled; where they disagree about a track, the surer ones have it."""
+"""Windows labelled; the one whose labels fit best, and most, counts."""
 WHOLE = 1.5
 """Tracks a label up to which a recording counts as whole, and is labelled in one piece."""
-FITS = 3.0
+FITS = (2.0, 3.0)
 """Mean square deviation up to which a piece keeps a label's distances: 1 is usual, strangers have
-6 to 9."""
-CLEAR = 1.5
-"""How much worse the next label must fit, in the same terms: a factor of two in likelihood for
-every distance measured."""
+6 to 9. The second is for the end, when the distances are known from all movement."""
+CLEAR = (2.0, 1.5)
+"""How much worse the next label must fit, in the same terms."""
 BLOCK_S = 0.1
 """s, length of the blocks in which a labelled track is checked."""
 FOREIGN = 6.0
 """Mean square deviation from which on a block does not belong to its label."""
 ROUNDS = 4
 """Most times the body is recognised anew with what has been labelled so far."""
-FEWEST_FRAMES = 10
-"""Frames of a track below which it is not looked at when the body is recognised."""
+LASTING = 0.15
+"""Share of the recording that a track without label must last to be looked at then: pieces of one
+marker that are never seen together look like two."""
 SWEEPS = 40
 """Most rounds of labelling what has become decidable."""
 
@@ -113,10 +114,10 @@ def label_through_time(
         before = sum(label >= 0 for label in state.labels)
         if not before:
             return state
-        _propagate(state, markers, rate, fixed)
-        if not _recognise_again(state, markers, model, labeller, least_confidence, bool(seeds)):
+        _propagate(state, markers, rate, fixed, late=False)
+        if not _recognise_again(state, markers, model, least_confidence, fixed):
             break
-    _propagate(state, markers, rate, fixed)
+    _propagate(state, markers, rate, fixed, late=True)
     return state
 
 
@@ -136,72 +137,64 @@ def _tracks(
     ]
 
 
-def _propagate(state: Labelled, markers: Array, rate: float, fixed: set[int]) -> None:
+def _propagate(
+    state: Labelled, markers: Array, rate: float, fixed: set[int], *, late: bool
+) -> None:
     """Label by the person's own distances whatever can be, cutting what stops fitting."""
     own = own_distances(state.points)
     _cut_foreign(state, markers, rate, own, fixed)
     for sweep in range(SWEEPS):
-        if not _sweep(state, markers, own):
+        if not _sweep(state, markers, own, fixed, late=late):
             break
         if sweep % 3 == 2:
             own = own_distances(state.points)
     own = own_distances(state.points)
     if _cut_foreign(state, markers, rate, own, fixed):
-        while _sweep(state, markers, own):
-            pass
+        for _ in range(SWEEPS):
+            if not _sweep(state, markers, own, fixed, late=late):
+                break
 
 
 def _recognise_again(
     state: Labelled,
     markers: Array,
     model: TopologicalModel,
-    labeller: Labeller,
     least_confidence: float,
-    keep_names: bool,
+    fixed: set[int],
 ) -> bool:
-    """Recognise the body once more: labels so far as whole trajectories, beside what has none.
+    """Recognise the body once more: what has a label as one point each, beside long tracks.
 
-    What is labelled may change its label as a whole, and markers that the first window did not
-    show come in. Return whether anything changed.
+    They start from the labels they have. A label may go to another point as a whole, and markers
+    that the first window did not show come in. Return whether anything changed.
     """
-    held = [i for i in range(len(model.labels)) if i in set(state.labels)]
-    loose = [k for k, label in enumerate(state.labels) if label < 0]
-    length = {k: sum(r.end - r.start for r in state.tracks[k]) for k in loose}
-    most = max(4, round((WHOLE - 1) * len(model.labels)))
-    loose = sorted(sorted(loose, key=lambda k: (-length[k], k))[:most])
-    loose = [k for k in loose if length[k] >= FEWEST_FRAMES]
+    held = sorted({label for label in state.labels if label >= 0})
+    least = LASTING * len(markers)
+    loose = [k for k, of in enumerate(state.labels) if of < 0 and _length(state, k) >= least]
     points = np.concatenate(
         [state.points[:, held], points_of(markers, [state.tracks[k] for k in loose])], axis=1
     )
-    match = labeller(points, model)
-    if match.note or not match.fit > 0:
+    start = np.array([*held, *([-1] * len(loose))], dtype=np.int64)
+    match = match_pair_statistics(points, model, start)
+    if match.note:
         return False
-    sure = match.confidence >= least_confidence
-    renamed = {
-        old: int(new) if good else -1
-        for old, new, good in zip(held, match.labels, sure, strict=False)
-    }
-    changed = not keep_names and any(old != new for old, new in renamed.items())
-    if changed:
-        before = list(zip(state.labels, state.confidence, strict=True))
-        for k, (old, _) in enumerate(before):
-            if old >= 0:
-                _take(state, k)
-        for k, (old, c) in enumerate(before):
-            if old >= 0 and renamed[old] >= 0:
-                _give(state, markers, k, renamed[old], c)
-    for k, label, good, c in zip(
-        loose,
-        match.labels[len(held) :],
-        sure[len(held) :],
-        match.confidence[len(held) :],
-        strict=True,
-    ):
-        if good and label >= 0:
-            _give(state, markers, k, int(label), float(c))
-            changed = changed or state.labels[k] >= 0
     state.fit = match.fit
-    return changed
+    sure = match.confidence >= least_confidence
+    new = np.where(sure, match.labels, -1)
+    into = dict(zip(held, new[: len(held)].tolist(), strict=True))
+    before = list(zip(state.labels, state.confidence, strict=True))
+    changed = any(old != label for old, label in into.items()) or (new[len(held) :] >= 0).any()
+    moved = [k for k, (of, _) in enumerate(before) if of >= 0 and into[of] != of and k not in fixed]
+    for k in moved:
+        _take(state, k)
+    # the longest first: where two claim a label, the longer one is the safer
+    claims = [(k, into[before[k][0]], before[k][1]) for k in moved] + [
+        (k, int(new[len(held) + i]), float(match.confidence[len(held) + i]))
+        for i, k in enumerate(loose)
+    ]
+    for k, label, c in sorted(claims, key=lambda claim: (-_length(state, claim[0]), claim[0])):
+        if label >= 0:
+            _give(state, markers, k, label, c)
+    return bool(changed)
 
 
 def _recognised(
@@ -222,31 +215,18 @@ def _recognised(
         columns = list(range(len(state.tracks)))
         state.windows_s.append((0.0, n_frames / rate))
         return labeller(points_of(markers, state.tracks), model), columns
-    votes = np.zeros((len(state.tracks), n_labels))
-    fits = []
+    best: tuple[float, Match, list[int]] | None = None
     for start, end, columns in _windows(state.tracks, n_frames, rate, n_labels):
         points = points_of(markers, [state.tracks[k] for k in columns])[start:end]
         match = labeller(points, model)
-        for k, label, sure in zip(columns, match.labels, match.confidence, strict=True):
-            if label >= 0 and sure >= least_confidence:
-                votes[k, label] += sure
-        if not match.note:
-            fits.append(match.fit)
-            state.windows_s.append((start / rate, end / rate))
-    if not fits:
+        sure = (match.labels >= 0) & (match.confidence >= least_confidence)
+        worth = float(sure.sum()) * (match.fit if np.isfinite(match.fit) else 1.0)
+        if not match.note and (best is None or worth > best[0]):
+            best = worth, match, columns
+            state.windows_s = [(start / rate, end / rate)]
+    if best is None:
         return nothing(0, "at no time can enough of the body be seen at once"), []
-    columns = np.flatnonzero(votes.any(axis=1)).tolist()
-    labels = np.array([votes[k].argmax() for k in columns], dtype=np.int64)
-    share = np.array([votes[k].max() / votes[k].sum() for k in columns])
-    strength = np.array([votes[k].max() for k in columns])
-    # the surest first: a label goes to whoever claims it best
-    order = np.argsort(-strength, kind="stable")
-    sure = np.minimum(strength, 1.0) * share
-    agreed = np.where(share > 0.5, labels, -1)
-    return (
-        Match(agreed[order], sure[order], float(np.mean(fits))),
-        [columns[k] for k in order],
-    )
+    return best[1], best[2]
 
 
 def _windows(
@@ -315,7 +295,9 @@ def _frames(track: Track) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     return frames, columns
 
 
-def _sweep(state: Labelled, markers: Array, own: OwnDistances) -> bool:
+def _sweep(
+    state: Labelled, markers: Array, own: OwnDistances, fixed: set[int], *, late: bool
+) -> bool:
     """Label all tracks that have become decidable; return whether there were any."""
     offers: list[tuple[float, float, int, int]] = []
     for k, track in enumerate(state.tracks):
@@ -323,27 +305,58 @@ def _sweep(state: Labelled, markers: Array, own: OwnDistances) -> bool:
             continue
         frames, columns = _frames(track)
         cost, width = costs_of(markers[frames, columns], frames, state.points, own)
-        taken = np.isfinite(state.points[frames, :, 0]).any(axis=0)
+        taken = _blocked(state, k, frames, fixed)
         known = np.isfinite(cost)
         if not known.any():
             continue
         cost = np.where(known, cost, np.inf)
         # a taken label still competes: what fits it best is a copy of it, no other marker
         score = np.where(known, cost + width, np.inf)
-        free = np.where(taken | (cost > FITS), np.inf, score)
+        free = np.where(taken | (cost > FITS[late]), np.inf, score)
         label = int(free.argmin())
         if not np.isfinite(free[label]):
             continue
         second = float(np.delete(score, label).min(initial=np.inf))
-        if second < free[label] + CLEAR:
+        if second < free[label] + CLEAR[late]:
             continue
         offers.append((float(free[label]), second, k, label))
     given = False
     for cost_, second, k, label in sorted(offers):
         before = state.labels[k]
+        for other in _overlapping(state, k, label):
+            if other not in fixed and _length(state, other) < _length(state, k):
+                _take(state, other)
         _give(state, markers, k, label, 1 - float(np.exp(-(second - cost_) / 2)))
         given = given or state.labels[k] != before
     return given
+
+
+def _length(state: Labelled, k: int) -> int:
+    return sum(run.end - run.start for run in state.tracks[k])
+
+
+def _overlapping(state: Labelled, k: int, label: int) -> list[int]:
+    """Return the tracks with this label that are there while track k is."""
+    return [
+        other
+        for other, of in enumerate(state.labels)
+        if of == label
+        and any(
+            a.start < b.end and b.start < a.end for a in state.tracks[other] for b in state.tracks[k]
+        )
+    ]
+
+
+def _blocked(
+    state: Labelled, k: int, frames: NDArray[np.intp], fixed: set[int]
+) -> NDArray[np.bool_]:
+    """Return which labels track k cannot have: something longer has them at the same time."""
+    blocked = np.isfinite(state.points[frames, :, 0]).any(axis=0)
+    for label in np.flatnonzero(blocked):
+        rivals = _overlapping(state, k, int(label))
+        longer = [o in fixed or _length(state, o) >= _length(state, k) for o in rivals]
+        blocked[label] = not rivals or any(longer)
+    return np.asarray(blocked)
 
 
 def _cut_foreign(

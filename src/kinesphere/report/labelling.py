@@ -20,7 +20,7 @@ STILLS = 3
 """Instants drawn, spread over the recording."""
 COLUMNS = 240
 """Cells of the time line."""
-_SURE, _FAIR = 0.9, 0.5
+_SURE, _FAIR = 0.5, 0.25
 _WIDTH, _HEIGHT = 300, 380
 
 
