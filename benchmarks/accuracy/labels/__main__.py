@@ -4,7 +4,7 @@ import argparse
 import json
 import sys
 
-from benchmarks.accuracy.labels import clean, missing
+from benchmarks.accuracy.labels import broken, clean, elsewhere, missing
 from benchmarks.accuracy.labels.page import page
 from benchmarks.accuracy.labels.sources import ROOT, folder
 from kinesphere import __version__
@@ -15,6 +15,13 @@ PARTS = {
     "windows-5s": lambda: clean.windows(5.0, several=False),
     "windows-2s": lambda: clean.windows(2.0, several=True),
     "missing": missing.missing,
+    "broken": broken.broken,
+    "halves": elsewhere.halves,
+    "functional": elsewhere.functional,
+    "creatures": elsewhere.creatures,
+    "two-people": elsewhere.two_people,
+    "refusals": elsewhere.refusals,
+    "speed": elsewhere.speed,
 }
 
 

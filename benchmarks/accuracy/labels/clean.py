@@ -56,9 +56,7 @@ def _frames_by_tree(points: np.ndarray, truth: np.ndarray, pose: np.ndarray, nam
     del name
     wanted = np.argsort(truth)
     whole = np.isfinite(points).all(axis=(1, 2))
-    return sum(
-        bool((label_frame(frame, pose, up) == wanted).all()) for frame in points[whole]
-    )
+    return sum(bool((label_frame(frame, pose, up) == wanted).all()) for frame in points[whole])
 
 
 def windows(length_s: float, *, several: bool) -> list[dict[str, Any]]:

@@ -30,7 +30,9 @@ def cmu(name: str) -> Recording:
     model = built_in_model("cmu41")
     recording = match_labels(read(folder() / "cmu41" / f"{name}.c3d"), model)
     return replace(
-        recording, markers=recording.markers[:, recording.columns(model.labels)], labels=model.labels
+        recording,
+        markers=recording.markers[:, recording.columns(model.labels)],
+        labels=model.labels,
     )
 
 

@@ -6,6 +6,7 @@ alone, and no exchange of two labels leads from one to the other.
 
 from collections.abc import Iterator
 from itertools import combinations, islice, permutations
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ from kinesphere.data import Array, TopologicalModel
 LARGEST_SEGMENT = 6
 """Markers of a segment all of whose orders are looked at: 720. Of larger ones, those that exchange
 up to three pairs."""
+LARGEST_TURNED = 9
+"""Markers of a segment beyond which it is not turned: it is no rigid body, or it is not alike."""
 ALIKE = 0.4
 """Relative rms difference of distances up to which an order of a segment's markers is a turn of
 it: a head is about twice as long as wide, the front of a trunk lower than its back."""
@@ -22,10 +25,19 @@ MOST_TURNS = 8
 """Turns kept of one segment, the most alike first."""
 
 
-def block_moves(model: TopologicalModel, labels: tuple[str, ...], mean: Array) -> NDArray[np.int64]:
-    """Return permutations of labels, (n_moves, n_labels): label i gives its point to ``move[i]``.
+class Moves(NamedTuple):
+    """Permutations of labels: label i gives its point to ``move[i]``."""
 
-    The first mirrors the whole body; it is the identity where nothing mirrors. Mirrored limbs from every joint outward, every segment mirrored by itself, the whole body
+    every: NDArray[np.int64]
+    """(n_moves, n_labels); the first mirrors the whole body, the identity where nothing does."""
+    turns: NDArray[np.int64]
+    """(n_turns, n_labels) those that turn a segment on the spot."""
+
+
+def block_moves(model: TopologicalModel, labels: tuple[str, ...], mean: Array) -> Moves:
+    """Return the exchanges of blocks of a layout.
+
+    Mirrored limbs from every joint outward, every segment mirrored by itself, the whole body
     mirrored, and every segment turned on the spot.
 
     Parameters
@@ -37,17 +49,29 @@ def block_moves(model: TopologicalModel, labels: tuple[str, ...], mean: Array) -
     """
     at = {label: i for i, label in enumerate(labels)}
     twin = twins(model, labels)
-    moves = [twin.copy()]
+    moves, turns = [], []
     owned = {s.name: [at[x] for x in s.markers if x in at] for s in model.segments}
     for joint in model.joints:
         outward = [x for limb in _beyond(model, joint.child) for x in owned[limb]]
         moves.append(_mirrored(outward, twin))
-    for own in owned.values():
+    for segment in model.segments:
+        own = owned[segment.name]
+        whole = own + [at[x] for x in segment.shared if x in at]
         moves.append(_mirrored(own, twin))
-        moves += _turns(own, mean)
-    unique = {move.tobytes(): move for move in moves[1:] if (move != np.arange(len(move))).any()}
-    unique.pop(twin.tobytes(), None)
-    return np.array([twin, *unique.values()], dtype=np.int64)
+        turns += _turns(own, mean)
+        if len(own) < len(whole) <= LARGEST_SEGMENT:
+            turns += _turns(whole, mean)  # a foot turns with the ankle, which is the shank's
+    known = {twin.tobytes(), np.arange(len(twin)).tobytes()}
+    return Moves(
+        np.array([twin, *_unlike(moves + turns, known)], dtype=np.int64),
+        np.array(_unlike(turns, known), dtype=np.int64).reshape(-1, len(twin)),
+    )
+
+
+def _unlike(moves: list[NDArray[np.int64]], known: set[bytes]) -> list[NDArray[np.int64]]:
+    """Return moves once each, without those known already."""
+    unique = {move.tobytes(): move for move in moves}
+    return [move for key, move in unique.items() if key not in known]
 
 
 def twins(model: TopologicalModel, labels: tuple[str, ...]) -> NDArray[np.int64]:
@@ -80,7 +104,7 @@ def _mirrored(some: list[int], twin: NDArray[np.int64]) -> NDArray[np.int64]:
 def _turns(own: list[int], mean: Array) -> list[NDArray[np.int64]]:
     """Return the orders of one segment's markers that leave its distances about as they are."""
     n = len(own)
-    if n < 2:
+    if not 2 <= n <= LARGEST_TURNED:
         return []
     inner = mean[np.ix_(own, own)]
     size = np.nanmean(inner[~np.eye(n, dtype=bool)])

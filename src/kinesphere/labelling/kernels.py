@@ -92,7 +92,12 @@ def handed_energy(
     """
     energy = 0.0
     for q in only:
-        a, b, c, d = holder[quads[q, 0]], holder[quads[q, 1]], holder[quads[q, 2]], holder[quads[q, 3]]
+        a, b, c, d = (
+            holder[quads[q, 0]],
+            holder[quads[q, 1]],
+            holder[quads[q, 2]],
+            holder[quads[q, 3]],
+        )
         if a >= 0 and b >= 0 and c >= 0 and d >= 0:
             energy += BASE * abs(wanted[q]) - wanted[q] * handedness_of(table, a, b, c, d) / FULL
     return energy
@@ -203,7 +208,12 @@ def _without(
             or quads[q, 3] == label
         ):
             continue
-        a, b, c, d = holder[quads[q, 0]], holder[quads[q, 1]], holder[quads[q, 2]], holder[quads[q, 3]]
+        a, b, c, d = (
+            holder[quads[q, 0]],
+            holder[quads[q, 1]],
+            holder[quads[q, 2]],
+            holder[quads[q, 3]],
+        )
         if a >= 0 and b >= 0 and c >= 0 and d >= 0:
             energy += BASE * abs(wanted[q]) - wanted[q] * handedness_of(table, a, b, c, d) / FULL
     return energy
@@ -417,9 +427,7 @@ def move_energies(
                 i = moves[x, i]
                 holder[i] = k
             tried[k] = i
-        energies[x] = pair_energy(tried, costs) + handed_energy(
-            holder, quads, wanted, table, every
-        )
+        energies[x] = pair_energy(tried, costs) + handed_energy(holder, quads, wanted, table, every)
 
 
 @kernel

@@ -100,5 +100,3 @@ def shape_from_distances(mean: Array, handed: Array | None = None) -> Array:
         if (np.sign(volume) * handed[:, 4]).sum() < 0:
             points[:, 2] *= -1
     return points
-
-

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.pair_distances import pair_distances
 from kinesphere.geometry.signature import FRAMES, Signature, evenly_spread, scale_of, signature
-from kinesphere.labelling.blocks import block_moves, twins
+from kinesphere.labelling.blocks import Moves, block_moves, twins
 from kinesphere.labelling.matching import Match, nothing
 from kinesphere.labelling.problem import Labels, Problem, problem_of
 from kinesphere.labelling.search import (
@@ -52,7 +52,7 @@ class _Layout:
     """A template and what the search needs beside it."""
 
     template: Template
-    moves: Labels
+    moves: Moves
     near: Labels
     twin: NDArray[np.int64]
     into: NDArray[np.int64]
@@ -238,7 +238,7 @@ def _confidence(solved: _Solved, layout: _Layout) -> Array:
     """Return 0…1 for each point, by the least rise of energy that changes its label."""
     problem, labels = solved.problem, solved.labels
     margin = solved.margins.copy()
-    for move in layout.moves:
+    for move in layout.moves.every:
         changed = np.where(labels >= 0, move[labels], -1)
         rise = problem.energy(changed) - solved.energy
         moved = changed != labels

@@ -6,6 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.labelling import kernels
+from kinesphere.labelling.blocks import Moves
 from kinesphere.labelling.problem import INTO_FREE, Labels, Problem
 
 STEPS = 20_000
@@ -46,13 +47,13 @@ class Found(NamedTuple):
 
 
 def find_labels(
-    problem: Problem, moves: Labels, near: Labels, *, nullable: bool, starts: int = STARTS
+    problem: Problem, moves: Moves, near: Labels, *, nullable: bool, starts: int = STARTS
 ) -> Found:
     """Search for the labels of least energy.
 
     Parameters
     ----------
-    moves : (n_moves, n_labels)
+    moves
         Exchanges of blocks, as ``block_moves`` returns them.
     near : (n_labels, n_labels)
         For each label all labels, the nearest first, itself included.
@@ -82,7 +83,7 @@ def find_labels(
 
 
 def exchange_blocks(
-    problem: Problem, labels: Labels, moves: Labels, *, nullable: bool
+    problem: Problem, labels: Labels, moves: Moves, *, nullable: bool
 ) -> tuple[Labels, float]:
     """Return labels after exchanges of blocks, each followed by a descent, as long as that helps."""
     energy = problem.energy(labels)
@@ -103,8 +104,9 @@ def exchange_blocks(
     return labels, energy
 
 
-def _promising(problem: Problem, labels: Labels, moves: Labels) -> list[Labels]:
+def _promising(problem: Problem, labels: Labels, blocks: Moves) -> list[Labels]:
     """Return what the most promising one or two moves lead to, further ones added greedily."""
+    moves = blocks.every
     n = len(moves)
     energies = np.full((n, n), np.inf)
     every = np.arange(len(problem.quadruples))
@@ -118,8 +120,8 @@ def _promising(problem: Problem, labels: Labels, moves: Labels) -> list[Labels]:
         tried = _moved(tried, moves[y]) if y > x else tried
         found.append(_greedy(problem, tried, moves, energies[x, y]))
     # a body taken for one that faces the other way: mirrored, and every segment turned
-    mirrored = _moved(labels, moves[0])
-    found.append(_greedy(problem, mirrored, moves[1:], problem.energy(mirrored)))
+    mirrored = _moved(labels, blocks.every[0])
+    found.append(_greedy(problem, mirrored, blocks.turns, problem.energy(mirrored)))
     return found
 
 

@@ -192,7 +192,9 @@ def _step(
         name: {
             "confidence": None if np.isnan(sure[i]) else round(float(sure[i]), 3),
             "share": round(float(seen[i]), 4),
-            "pieces": sum(len(t) for t, of in zip(state.tracks, state.labels, strict=True) if of == i),
+            "pieces": sum(
+                len(t) for t, of in zip(state.tracks, state.labels, strict=True) if of == i
+            ),
         }
         for i, name in enumerate(model.labels)
         if name in known or seen[i] > 0
@@ -210,7 +212,9 @@ def _step(
             f"told from others: {', '.join(map(str, missing))}"
         )
     if doubtful:
-        warnings.append(f"labels to look at, another fits nearly as well: {', '.join(map(str, doubtful))}")
+        warnings.append(
+            f"labels to look at, another fits nearly as well: {', '.join(map(str, doubtful))}"
+        )
     if state.cut:
         warnings.append(
             f"{state.cut} trajectories were cut where they stopped moving with their neighbours: "

@@ -113,7 +113,9 @@ def template_of(model: TopologicalModel, labels: Sequence[str] | None = None) ->
     prior = (DISTANCE_SHARE * middle) ** 2 + DISTANCE_FLOOR**2 + DEVIATION_SHARE * _mean(std**2)
     weight = np.maximum(n + PRIOR - 1, 1)
     variance = (PRIOR * prior + np.nansum((mean - middle) ** 2, axis=0)) / weight
-    log_variance = (PRIOR * DEVIATION_SPREAD**2 + np.nansum((logs - log_middle) ** 2, axis=0)) / weight
+    log_variance = (
+        PRIOR * DEVIATION_SPREAD**2 + np.nansum((logs - log_middle) ** 2, axis=0)
+    ) / weight
     quadruples, handed = _quadruples(model.statistics, known, middle)
     return Template(
         labels=known,

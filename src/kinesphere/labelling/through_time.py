@@ -342,7 +342,9 @@ def _overlapping(state: Labelled, k: int, label: int) -> list[int]:
         for other, of in enumerate(state.labels)
         if of == label
         and any(
-            a.start < b.end and b.start < a.end for a in state.tracks[other] for b in state.tracks[k]
+            a.start < b.end and b.start < a.end
+            for a in state.tracks[other]
+            for b in state.tracks[k]
         )
     ]
 
@@ -403,7 +405,10 @@ def _without(track: Track, bad: list[Run]) -> list[Run]:
     kept = []
     for run in track:
         edge = run.start
-        for hole in sorted((r for r in bad if run.start <= r.start < run.end and r.column == run.column), key=lambda r: r.start):
+        for hole in sorted(
+            (r for r in bad if run.start <= r.start < run.end and r.column == run.column),
+            key=lambda r: r.start,
+        ):
             if hole.start > edge:
                 kept.append(Run(run.column, edge, hole.start))
             edge = hole.end

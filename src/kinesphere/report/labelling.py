@@ -57,15 +57,28 @@ def labelling_html(recording: Recording, model: TopologicalModel, title: str = "
     found = step.findings
     rows = _rows(recording, model)
     loose = sum(
-        not np.isfinite(c) for c in (recording.confidence if recording.confidence is not None else [])
+        not np.isfinite(c)
+        for c in (recording.confidence if recording.confidence is not None else [])
     )
     given = sum(row.trust != "" for row in rows)
     tiles = [
         ("Labels given", f"{given} of {len(rows)}", f"model {model.name}"),
-        ("To look at", str(sum(row.trust == "poor" for row in rows)), "another label fits nearly as well"),
+        (
+            "To look at",
+            str(sum(row.trust == "poor" for row in rows)),
+            "another label fits nearly as well",
+        ),
         ("Left unlabelled", str(loose), "ghosts, props, pieces nobody could tell"),
-        ("Fit", number_in_words(_number(found.get("fit_nats_a_pair"))), "nats a pair better than chance; 1 and more is usual"),
-        ("Recording", f"{recording.n_frames / recording.rate:.1f} s", f"{recording.n_frames:,} frames at {recording.rate:g} Hz"),
+        (
+            "Fit",
+            number_in_words(_number(found.get("fit_nats_a_pair"))),
+            "nats a pair better than chance; 1 and more is usual",
+        ),
+        (
+            "Recording",
+            f"{recording.n_frames / recording.rate:.1f} s",
+            f"{recording.n_frames:,} frames at {recording.rate:g} Hz",
+        ),
     ]
     page = environment().from_string(asset("labelling.html.j2"))
     return page.render(
@@ -124,9 +137,7 @@ def _cells(seen: np.ndarray) -> Markup:
     """Return where a label is seen over time as a strip."""
     edges = np.linspace(0, len(seen), min(COLUMNS, len(seen)) + 1).astype(int)
     share = np.array([seen[a:b].mean() for a, b in zip(edges[:-1], edges[1:], strict=True)])
-    parts = [
-        f'<rect x="{a}" y="0" width="{b - a}" height="8"/>' for a, b in runs(share >= 0.5)
-    ]
+    parts = [f'<rect x="{a}" y="0" width="{b - a}" height="8"/>' for a, b in runs(share >= 0.5)]
     return Markup(
         f'<svg class="strip" viewBox="0 0 {len(share)} 8" preserveAspectRatio="none" '
         f'aria-hidden="true">{"".join(parts)}</svg>'
@@ -148,12 +159,17 @@ def _stills(recording: Recording, model: TopologicalModel) -> list[dict[str, Any
         frame = int(part[seen[part].argmax()])
         if seen[frame] >= 4:
             drawn.append(
-                {"time": f"{frame / upright.rate:.2f} s", "svg": _drawing(upright, model, columns, frame)}
+                {
+                    "time": f"{frame / upright.rate:.2f} s",
+                    "svg": _drawing(upright, model, columns, frame),
+                }
             )
     return drawn
 
 
-def _drawing(recording: Recording, model: TopologicalModel, columns: list[int], frame: int) -> Markup:
+def _drawing(
+    recording: Recording, model: TopologicalModel, columns: list[int], frame: int
+) -> Markup:
     """Return one instant, seen across the widest horizontal extent of the body."""
     points = recording.markers[frame, columns]
     known = np.isfinite(points[:, 0])
