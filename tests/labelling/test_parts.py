@@ -229,9 +229,9 @@ def test_own_distances_know_their_marker(legs):
 class TestLive:
     def test_a_crowd_gets_its_labels(self, legs, rng):
         _, recording = legs
-        live = LiveLabels(recording.markers[:500], recording.labels, recording.rate)
-        hidden = slice(520, 535)
-        for t in range(500, 600):
+        live = LiveLabels(recording.markers[:1000], recording.labels, recording.rate)
+        hidden = slice(1020, 1035)
+        for t in range(1000, 1100):
             frame = recording.markers[t].copy()
             if hidden.start <= t < hidden.stop:
                 frame[5] = np.nan

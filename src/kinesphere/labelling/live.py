@@ -17,7 +17,7 @@ from kinesphere.labelling.own_distances import OwnDistances, own_distances
 REACH = 0.02
 """m, farthest a point may lie from where its marker is expected, beside what acceleration adds."""
 ACCELERATION = 150.0
-"""m/s², of feet that strike and fists: over one frame a marker strays by half of it times dt²."""
+"""m/s², of feet that strike and fists: from one step to the next a marker strays by it times dt²."""
 FAR = 10.0
 """m, stands for never in the assignment."""
 SMOOTH = 0.5
@@ -53,7 +53,7 @@ class LiveLabels:
                 "four at least are needed"
             )
         self.labels = labels
-        self._reach = REACH + ACCELERATION / (2 * rate**2)
+        self._reach = REACH + ACCELERATION / rate**2
         self.own: OwnDistances = own_distances(labelled)
         self._ranked = np.argsort(
             np.where(np.isnan(self.own.deviation), np.inf, self.own.deviation), axis=1

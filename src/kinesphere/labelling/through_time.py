@@ -35,7 +35,8 @@ CLEAR = (2.0, 1.5)
 BLOCK_S = 0.1
 """s, length of the blocks in which a labelled track is checked."""
 FOREIGN = 6.0
-"""Mean square deviation from which on a block does not belong to its label."""
+"""Mean square deviation from which on a block does not belong to its label, if it fits another:
+a movement not made before is as far from a label's own distances, but fits no other ones."""
 ROUNDS = 4
 """Most times the body is recognised anew with what has been labelled so far."""
 LASTING = 0.15
@@ -379,7 +380,9 @@ def _cut_foreign(
             for a, b in zip(edges[:-1], edges[1:], strict=True):
                 frames = np.arange(a, b)
                 cost, _ = costs_of(markers[frames, run.column], frames, state.points, own)
-                foreign.append(bool(cost[label] > FOREIGN))
+                others = np.delete(np.where(np.isnan(cost), np.inf, cost), label)
+                better = others.min(initial=np.inf) <= FITS[1]
+                foreign.append(bool(cost[label] > FOREIGN and better))
             bad += [
                 Run(run.column, int(edges[r.start]), int(edges[r.end]))
                 for r in runs_of(np.array(foreign)[:, None])
