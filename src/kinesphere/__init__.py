@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from kinesphere.errors import KinesphereError as KinesphereError
     from kinesphere.io import read as read
     from kinesphere.io import write as write
+    from kinesphere.labelling import label as label
     from kinesphere.pipeline import Settings as Settings
     from kinesphere.pipeline import solve as solve
     from kinesphere.report import report_html as report_html
@@ -47,6 +48,7 @@ _ROOMS = {
     "editing": "apply_edits",
     "errors": "KinesphereError",
     "io": "read write",
+    "labelling": "label",
     "pipeline": "Settings solve",
     "report": "report_html",
 }

@@ -8,6 +8,7 @@ from kinesphere.cli.convert import convert
 from kinesphere.cli.demo import demo
 from kinesphere.cli.edit import edit
 from kinesphere.cli.info import info
+from kinesphere.cli.label import label
 from kinesphere.cli.learn import model
 from kinesphere.cli.settings import settings
 from kinesphere.cli.solve import solve
@@ -49,5 +50,5 @@ def kinesphere(
         typer.echo(context.get_help())
 
 
-for command in (demo, info, solve, edit, convert, model, settings):
+for command in (demo, info, label, solve, edit, convert, model, settings):
     app.command()(command)

@@ -70,6 +70,8 @@ def model(
 
 def common_model(recordings: "list[Recording]") -> "TopologicalModel":
     """Return the built-in model that covers every recording; BadModel if there is none."""
+    from dataclasses import replace
+
     from kinesphere.errors import BadModel
     from kinesphere.labelling import built_in_models, choose_model
 
@@ -79,4 +81,5 @@ def common_model(recordings: "list[Recording]") -> "TopologicalModel":
             f"no built-in model ({', '.join(built_in_models())}) covers the labels of every "
             "recording; --segments FILE says which marker sits on which segment"
         )
-    return next(iter(chosen.values()))
+    # its own statistics stay behind: what is learnt are these recordings and no others
+    return replace(next(iter(chosen.values())), statistics=())

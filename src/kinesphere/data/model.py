@@ -7,6 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
+import numpy as np
+from numpy.typing import NDArray
+
 from kinesphere.data.arrays import Array, frozen
 from kinesphere.errors import BadModel
 
@@ -69,11 +72,27 @@ class MarkerStatistics:
     """(n_labels, n_labels) m, standard deviation over time."""
     recording: str
     """A name for the recording it was learnt from, never a path."""
+    quadruples: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 4), dtype=np.int64))
+    """(n_quadruples, 4) four labels, by index, that turn the same way round nearly all the time;
+    none in models learnt before there were any: left and right look alike then."""
+    handedness: Array = field(default_factory=lambda: np.empty(0))
+    """(n_quadruples,) −1…1: mean sign of the volume of each quadruple."""
 
     def __post_init__(self) -> None:
         n = len(self.labels)
-        object.__setattr__(self, "mean", frozen(self.mean, n, n, name="mean distances"))
-        object.__setattr__(self, "deviation", frozen(self.deviation, n, n, name="deviations"))
+        put = object.__setattr__
+        put(self, "mean", frozen(self.mean, n, n, name="mean distances"))
+        put(self, "deviation", frozen(self.deviation, n, n, name="deviations"))
+        quadruples = np.array(self.quadruples, dtype=np.int64).reshape(-1, 4)
+        if quadruples.size and not 0 <= quadruples.min() <= quadruples.max() < n:
+            raise BadModel(
+                f"statistics {self.recording}: a quadruple names label {quadruples.max()}; "
+                f"there are {n} labels, numbered from 0"
+            )
+        quadruples.flags.writeable = False
+        put(self, "quadruples", quadruples)
+        handed = frozen(self.handedness, len(quadruples), name="handedness")
+        put(self, "handedness", handed)
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,6 +28,10 @@ _Name: TypeAlias = Annotated[str, Field(min_length=1)]
 _Distances: TypeAlias = tuple[tuple[Annotated[float, Field(ge=0)] | None, ...], ...]
 
 
+_Index: TypeAlias = Annotated[int, Field(ge=0)]
+_Share: TypeAlias = Annotated[float, Field(ge=-1, le=1)]
+
+
 class _Strict(BaseModel):
     """No unknown keys, no NaN: a typing error must not pass as a default."""
 
@@ -88,6 +92,11 @@ class _Statistics(_Strict):
         description="One row a label, m; null where two markers were never seen together."
     )
     deviation_m: _Distances = Field(description="Standard deviation over time, m.")
+    handedness: tuple[tuple[_Index, _Index, _Index, _Index, _Share], ...] = Field(
+        (),
+        description="[a, b, c, d, sign]: four labels, numbered from 0, whose volume keeps its "
+        "sign; its mean, −1 to 1.",
+    )
 
     @model_validator(mode="after")
     def _square(self) -> "_Statistics":
@@ -97,6 +106,8 @@ class _Statistics(_Strict):
             if len(rows) != n or widths - {n}:
                 found = f"{len(rows)} rows of {', '.join(map(str, sorted(widths))) or 0}"
                 raise ValueError(f"{name} has {found}; {n} labels need {n} rows of {n}")
+        if self.handedness and (last := max(max(row[:4]) for row in self.handedness)) >= n:
+            raise ValueError(f"handedness names label {last}; {n} labels are numbered from 0")
         return self
 
 
@@ -150,7 +161,14 @@ def model_from_dict(content: Any, where: str = "model") -> TopologicalModel:
             mirror=m.mirror,
             aliases=m.aliases,
             statistics=tuple(
-                MarkerStatistics(s.labels, _nan(s.mean_m), _nan(s.deviation_m), s.recording)
+                MarkerStatistics(
+                    s.labels,
+                    _nan(s.mean_m),
+                    _nan(s.deviation_m),
+                    s.recording,
+                    np.array([row[:4] for row in s.handedness], dtype=np.int64).reshape(-1, 4),
+                    np.array([row[4] for row in s.handedness], dtype=np.float64),
+                )
                 for s in m.statistics
             ),
             description=m.description,
@@ -192,6 +210,10 @@ def model_to_dict(model: TopologicalModel) -> dict[str, Json]:
                 "labels": list(s.labels),
                 "mean_m": _null(s.mean),
                 "deviation_m": _null(s.deviation),
+                "handedness": [
+                    [*map(int, four), float(sign)]
+                    for four, sign in zip(s.quadruples, s.handedness, strict=True)
+                ],
             }
             for s in model.statistics
         ],

@@ -94,6 +94,8 @@ class Recording:
     """Number of the first stored frame in the file it came from."""
     residuals: Array | None = None
     """(n_frames, n_markers) m: the reconstruction residual of each point; NaN where unknown."""
+    confidence: Array | None = None
+    """(n_markers,) 0…1: how sure each label is that labelling gave; NaN for the others."""
     outputs: tuple[Output, ...] = ()
     analog: Analog | None = None
     events: tuple[Event, ...] = ()
@@ -118,6 +120,8 @@ class Recording:
         if self.residuals is not None:
             shape = self.markers.shape[:2]
             put(self, "residuals", frozen(self.residuals, *shape, name="residuals"))
+        if self.confidence is not None:
+            put(self, "confidence", frozen(self.confidence, len(labels), name="confidence"))
         for output in self.outputs:
             if len(output.values) != self.n_frames:
                 raise BadRecording(

@@ -135,11 +135,15 @@ def _with_joint_centres(solution: Solution) -> Recording:
     residuals = recording.residuals
     if residuals is not None:
         residuals = np.hstack([residuals, np.full(centres.shape[:2], np.nan)])
+    sure = recording.confidence
+    if sure is not None:
+        sure = np.concatenate([sure, np.full(len(names), np.nan)])
     return replace(
         recording,
         markers=np.hstack([recording.markers, centres]),
         labels=recording.labels + names,
         residuals=residuals,
+        confidence=sure,
     )
 
 
@@ -153,5 +157,6 @@ def _model_markers(solution: Solution) -> Recording:
         markers=recording.markers[:, at],
         labels=tuple(opensim_name(recording.labels[i]) for i in at),
         residuals=None,
+        confidence=None,
         world_from_file=np.eye(3),
     )

@@ -61,6 +61,7 @@ def match_labels(
         residuals=recording.residuals[:, kept]
         if dropped and recording.residuals is not None
         else recording.residuals,
+        confidence=None if recording.confidence is None else recording.confidence[kept],
         history=(*recording.history, step),
     )
 

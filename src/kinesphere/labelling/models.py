@@ -33,6 +33,8 @@ from kinesphere.data.model_dict import model_from_dict
 from kinesphere.errors import BadModel
 
 _FOLDER = files("kinesphere.labelling") / "models"
+_STATISTICS = files("kinesphere.labelling") / "statistics"
+"""What labelling recognises a layout by; written by ``python -m benchmarks.built_in_statistics``."""
 
 
 def built_in_models() -> tuple[str, ...]:
@@ -55,4 +57,7 @@ def built_in_model(name: str) -> TopologicalModel:
             f"no built-in model is called {name!r}; there are {', '.join(built_in_models())}"
         )
     content = json.loads((_FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+    statistics = _STATISTICS / f"{name}.json"
+    if statistics.is_file():
+        content["statistics"] = json.loads(statistics.read_text(encoding="utf-8"))
     return model_from_dict(content, where=f"built-in model {name}")

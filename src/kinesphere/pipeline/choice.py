@@ -1,12 +1,17 @@
 """Which topological model a recording is solved with."""
 
+import numpy as np
+
 from kinesphere.data import Recording, TopologicalModel
+from kinesphere.errors import BadRecording
 from kinesphere.labelling import (
+    LabellingSettings,
     built_in_model,
     built_in_models,
     choose_model,
     coverage,
     find_subjects,
+    label,
 )
 
 MOTION_ALONE = "none"
@@ -32,6 +37,27 @@ def model_for(
     if model is not None:
         return built_in_model(model)
     return choose_model(recording, subject)
+
+
+def with_labels(
+    recording: Recording, model: TopologicalModel, subject: str | None, settings: LabellingSettings
+) -> Recording:
+    """Return the recording with labels of the model, given where no point bears one.
+
+    Raises
+    ------
+    BadRecording
+        If none could be given.
+    """
+    if subject is not None or coverage(recording, model):
+        return recording
+    labelled = label(recording, model, settings)
+    if labelled.confidence is None or np.isnan(labelled.confidence).all():
+        raise BadRecording(
+            f"no point has a label of model {model.name}, and none could be given: "
+            + "; ".join(labelled.history[-1].warnings)
+        )
+    return labelled
 
 
 def why_no_model(recording: Recording, subject: str | None) -> str:

@@ -12,7 +12,7 @@ from kinesphere.errors import BadRecording
 from kinesphere.labelling import match_labels
 from kinesphere.normalization import Facing, normalize
 from kinesphere.parameterization import parameterize
-from kinesphere.pipeline.choice import MOTION_ALONE, model_for
+from kinesphere.pipeline.choice import MOTION_ALONE, model_for, with_labels
 from kinesphere.pipeline.doubts import calibration_doubts, with_checks
 from kinesphere.pipeline.motion_alone import discovered, normalized_somehow
 from kinesphere.pipeline.settings import Settings
@@ -44,9 +44,9 @@ def solve(
     recording
         As read: in the axes of its file.
     model
-        Which marker sits on which limb; the name of a built-in one; None to choose the built-in
-        one that the recording covers, if any; ``"none"`` for motion alone, as it is where none
-        fits.
+        Which marker sits on which limb; where no point bears one of its labels, they are given
+        first. Or the name of a built-in one; None to choose the built-in one that the recording
+        covers, if any; ``"none"`` for motion alone, as it is where none fits.
     subject
         The label prefix of the person, where the recording holds several.
     calibration
@@ -85,6 +85,7 @@ def solve(
                 asked=model == MOTION_ALONE,
             )
         else:
+            recording = with_labels(recording, given, subject, settings.labelling)
             labelled, chosen = match_labels(recording, given, subject), given
     with clock.stage("orientation"):
         oriented = with_checks(orient(labelled, chosen, settings.orientation))

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, get_type_hints
 
 from kinesphere.errors import BadSetting, UnreadableFile
+from kinesphere.labelling import LabellingSettings
 from kinesphere.normalization import NormalizationSettings
 from kinesphere.parameterization import ParameterizationSettings
 from kinesphere.pipeline.values import value_from
@@ -20,6 +21,7 @@ class Settings:
     """The settings of every stage of the line."""
 
     discovery: DiscoverySettings = field(default_factory=DiscoverySettings)
+    labelling: LabellingSettings = field(default_factory=LabellingSettings)
     orientation: OrientationSettings = field(default_factory=OrientationSettings)
     skeleton: SkeletonSettings = field(default_factory=SkeletonSettings)
     normalization: NormalizationSettings = field(default_factory=NormalizationSettings)

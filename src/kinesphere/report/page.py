@@ -3,15 +3,13 @@
 import base64
 import hashlib
 import json
-from functools import cache
-from importlib.resources import files
 from typing import Any
 
-from jinja2 import Environment, StrictUndefined
 from markupsafe import Markup
 
 import kinesphere
 from kinesphere.data import Solution
+from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.bodies import find_bodies
 from kinesphere.report.notices import names_of, notices
 from kinesphere.report.scene import scene_from_solution
@@ -36,8 +34,8 @@ def report_html(solution: Solution, title: str = "") -> str:
     """
     joints = joint_rows(solution)
     scene = scene_from_solution(solution)
-    script = Markup("\n".join(_asset(name) for name in _SCRIPTS))
-    page = _environment().from_string(_asset("page.html.j2"))
+    script = Markup("\n".join(asset(name) for name in _SCRIPTS))
+    page = environment().from_string(asset("page.html.j2"))
     return page.render(
         title=title or "Solved motion",
         version=kinesphere.__version__,
@@ -50,7 +48,7 @@ def report_html(solution: Solution, title: str = "") -> str:
         bodies=bodies_section(solution),
         stride=scene["stride"],
         shown_rate=f"{scene['rate']:g}",
-        style=Markup(_asset("page.css")),
+        style=Markup(asset("page.css")),
         script=script,
         # Only this very script may run: whatever a label smuggles in stays text.
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
@@ -63,22 +61,10 @@ def bodies_section(solution: Solution) -> Markup:
     bodies = find_bodies(solution)
     if bodies is None:
         return Markup()
-    return Markup(_environment().from_string(_asset("bodies.html.j2")).render(found=bodies))
+    return Markup(environment().from_string(asset("bodies.html.j2")).render(found=bodies))
 
 
 def _json_for_script(found: Any) -> str:
     """Return JSON that cannot close the script element it stands in."""
     text = json.dumps(found, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
-
-
-@cache
-def _asset(name: str) -> str:
-    return (files("kinesphere.report") / "assets" / name).read_text(encoding="utf-8")
-
-
-@cache
-def _environment() -> Environment:
-    return Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )

@@ -102,12 +102,14 @@ def _recording(path: Path, content: bytes, layout: Layout, frames: Frames) -> Re
         "n_analog_channels": layout.n_channels,
         "n_events": len(events),
     }
+    names = tuple(label for label, kind in zip(labels, kinds, strict=True) if kind is None)
     return Recording(
         markers=points[:, marker] * metres,
-        labels=tuple(label for label, kind in zip(labels, kinds, strict=True) if kind is None),
+        labels=names,
         rate=layout.rate,
         first_frame=first_frame,
         residuals=in_metres if np.nan_to_num(in_metres).any() else None,
+        confidence=_confidence(layout, names),
         outputs=outputs,
         analog=analog,
         events=events,
@@ -122,6 +124,17 @@ def _recording(path: Path, content: bytes, layout: Layout, frames: Frames) -> Re
             ),
         ),
     )
+
+
+def _confidence(layout: Layout, labels: tuple[str, ...]) -> Array | None:
+    """Return how sure labels are, where labelling has written it; None where it has not."""
+    names = layout.section.texts("LABELLING", "LABELS")
+    values = layout.section.numbers("LABELLING", "CONFIDENCE")
+    if not names or len(names) != len(values):
+        return None
+    sure = dict(zip(names, values, strict=True))
+    found = np.array([float(sure.get(label, np.nan)) for label in labels])
+    return found if ((found >= 0) & (found <= 1)).any() else None
 
 
 def _points(layout: Layout, frames: Frames, warnings: list[str]) -> Array:

@@ -38,6 +38,7 @@ def renewed(recording: Recording, points: tuple[Point, ...], source: Source | No
     section = source.layout.section if source else _new_section(recording)
     section = _with_points(section, recording, points, source)
     section = _with_frames(section, recording, source)
+    section = _with_confidence(section, recording)
     if source is None or recording.analog is not source.analog:
         section = _with_analog(section, recording.analog, source.analog if source else None)
     return _with_events(section, recording, source)
@@ -164,6 +165,18 @@ def _with_frames(section: Section, recording: Recording, source: Source | None) 
         for name, number in (("ACTUAL_START_FIELD", first), ("ACTUAL_END_FIELD", first + n - 1))
     )
     return section.with_parameters("TRIAL", start, end)
+
+
+def _with_confidence(section: Section, recording: Recording) -> Section:
+    """Say in a group of our own how sure the labels are that labelling gave."""
+    if recording.confidence is None:
+        return section
+    given = np.flatnonzero(np.isfinite(recording.confidence))
+    if not len(given):
+        return section
+    return section.with_texts(
+        "LABELLING", "LABELS", [recording.labels[i] for i in given]
+    ).with_list("LABELLING", *float_list("CONFIDENCE", recording.confidence[given]))
 
 
 def _with_analog(section: Section, analog: Analog | None, was: Analog | None) -> Section:

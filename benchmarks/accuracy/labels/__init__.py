@@ -1,0 +1,1 @@
+"""Labels given to stripped and shuffled recordings, by models of other people."""

@@ -1,0 +1,125 @@
+"""``kinesphere label``: labels for a recording that has none, or not all."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from kinesphere.cli.options import (
+    BadArgument,
+    JsonOption,
+    SetOption,
+    SettingsOption,
+    settings_from_options,
+)
+
+if TYPE_CHECKING:
+    from kinesphere.data import Recording
+
+
+def label(
+    file: Annotated[Path, typer.Argument(help="A recording; its points may have any names.")],
+    model: Annotated[
+        str,
+        typer.Option("--model", metavar="MODEL", help="A model file or the name of a built-in."),
+    ],
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", metavar="OUT.c3d", help="Where the labelled file goes."),
+    ],
+    assignments: SetOption = None,
+    settings_file: SettingsOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Label a recording by a model of the layout, learnt from other people.
+
+    Writes everything the file held with the labels that could be told and how sure they are, and a
+    page OUT.html beside it that shows where to look. Labels that are there already are kept; with
+    [bold]--set labelling.existing=check[/bold] they are checked, with [bold]=ignore[/bold] given
+    anew.
+
+    Examples: [bold]kinesphere label raw.c3d --model cmu41 -o labelled.c3d[/bold],
+    [bold]kinesphere label raw.c3d --model mine.json -o labelled.c3d[/bold]
+    """
+    from kinesphere.cli.console import print_json, progress_bar, stdout
+    from kinesphere.cli.files import read_recording
+    from kinesphere.cli.solve import model_from_text
+    from kinesphere.io import check_file_place, replacing, write
+    from kinesphere.labelling import built_in_model
+    from kinesphere.labelling import label as give_labels
+    from kinesphere.report import labelling_html
+
+    page = output.with_suffix(".html")
+    if output.suffix.lower() not in (".c3d", ".trc", ".csv"):
+        raise BadArgument(f"{output}: labels go to .c3d, or to .trc or .csv without confidences")
+    if output.exists() and file.exists() and output.samefile(file):
+        raise BadArgument(f"{output} is what is to be labelled; name another file for the result")
+    check_file_place(output)
+    settings = settings_from_options(assignments, settings_file)
+    with progress_bar(quiet=as_json) as progress:
+        progress("reading", 0, 3)
+        recording = read_recording(file)
+        chosen = model_from_text(model)
+        if isinstance(chosen, str):
+            chosen = built_in_model(chosen)
+        if chosen is None:
+            raise BadArgument("--model names no model")
+        progress("labelling", 1, 3)
+        labelled = give_labels(recording, chosen, settings.labelling)
+        progress("writing", 2, 3)
+        write(labelled, output)
+        with replacing(page) as temporary:
+            text = labelling_html(labelled, chosen, file.name)
+            temporary.write_text(text, encoding="utf-8", newline="\n")
+    summary = {"file": str(file), "output": str(output), "page": str(page), **describe(labelled)}
+    if as_json:
+        print_json(summary)
+        return
+    show(summary, labelled)
+    stdout().print(f"\nLabelled: {output}\nReport: {page}", soft_wrap=True)
+
+
+def describe(recording: "Recording") -> dict[str, Any]:
+    """Return what labelling found, for machines."""
+    step = recording.history[-1]
+    return {
+        "model": step.settings["model"],
+        "method": step.settings["method"],
+        **step.findings,
+        "warnings": list(step.warnings),
+    }
+
+
+def show(summary: dict[str, Any], recording: "Recording") -> None:
+    """Print what labelling found, for people."""
+    from kinesphere.cli.console import print_table, print_title, print_warnings, stdout
+
+    console = stdout()
+    if "labels" not in summary:
+        head = f"{summary['checked']} labels checked, {len(summary['disagree'])} disagree"
+        print_title(console, Path(summary["file"]).name, head)
+        print_warnings(console, summary["warnings"])
+        return
+    head = (
+        f"{summary['labels_given']} of {summary['labels_known']} labels of {summary['model']} given, "
+        f"{summary['points_left_unlabelled']} pieces left unlabelled"
+    )
+    print_title(console, Path(summary["file"]).name, head)
+    rows = []
+    for name, row in sorted(
+        summary["labels"].items(), key=lambda item: (item[1]["confidence"] or 0.0, item[0])
+    ):
+        sure = row["confidence"]
+        said = "not given" if sure is None else "look" if name in summary["doubtful"] else "sure"
+        rows.append(
+            (
+                name,
+                said,
+                "–" if sure is None else f"{sure:.2f}",
+                f"{row['share']:.0%}",
+                str(row["pieces"]),
+            )
+        )
+    header = ("label", "", "confidence", "of the time", "pieces")
+    print_table(console, header, rows, "llrrr", doubtful=("look", "not given"))
+    print_warnings(console, summary["warnings"])

@@ -1,0 +1,175 @@
+"""Labels as a quadratic assignment: what it costs that these points bear these labels.
+
+Every two points cost how unlike their distance, and its spread over time, are to those of their two
+labels; every four that turn the way the layout's do are rewarded. A point without a label costs
+nothing, so labels that fit worse than nothing are not given.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array
+from kinesphere.geometry.signature import Signature
+from kinesphere.labelling import kernels
+from kinesphere.labelling.template import DEVIATION_FLOOR, DEVIATION_SHARE, Template
+
+HANDED = 0.15
+"""Nats between a quadruple that turns the right way and one whose side is even; .05 to .3 measure
+alike where all markers are there, .15 better than .05 where some are missing."""
+UNKNOWN = 3.0
+"""Nats from which on a pair fits its labels worse than nothing does: right pairs have 1 on average,
+a point at a random place with a random spread 4 to 5."""
+INTO_FREE = 0.25
+"""What a nat counts that keeps a point from a label nobody bears. An exchange of two points must
+fit both of them worse; one that slides into the place of a missing neighbour is held by its own
+distances alone, and those differ between people."""
+FEWEST_FRAMES = 5
+"""Frames together that make a pair count in full; one alone says nothing of a spread."""
+
+Labels = NDArray[np.int64]
+"""(n_points,) index of the label each point bears, −1 for none."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Costs of one set of points and one template, ready for the kernels."""
+
+    costs: NDArray[np.float32]
+    """(n_points, n_labels, n_points, n_labels)"""
+    quadruples: NDArray[np.int64]
+    wanted: Array
+    """(n_quads,) handedness times reward."""
+    table: NDArray[np.int8]
+    of_label: NDArray[np.int64]
+    """(n_labels, n) quadruples that hold each label."""
+    n_of_label: NDArray[np.int64]
+
+    @property
+    def n_points(self) -> int:
+        """Number of points."""
+        return self.costs.shape[0]
+
+    @property
+    def n_labels(self) -> int:
+        """Number of labels."""
+        return self.costs.shape[1]
+
+    @property
+    def handed(self) -> tuple[NDArray[np.int64], Array, NDArray[np.int8]]:
+        """What kernels need to know of handedness."""
+        return self.quadruples, self.wanted, self.table
+
+    def energy(self, labels: Labels) -> float:
+        """Return the cost of these labels in nats; the lower, the likelier."""
+        every = np.arange(len(self.quadruples))
+        holder = self.holders(labels)
+        return kernels.pair_energy(labels, self.costs) + kernels.handed_energy(
+            holder, *self.handed, every
+        )
+
+    def agreement(self, labels: Labels) -> float:
+        """Return how far the quadruples that are all labelled turn the right way, −1…1."""
+        holder = self.holders(labels)
+        held = np.flatnonzero((holder[self.quadruples] >= 0).all(axis=1))
+        total = np.abs(self.wanted[held]).sum()
+        energy = kernels.handed_energy(holder, *self.handed, held)
+        return kernels.BASE - energy / total if total else np.nan
+
+    def holders(self, labels: Labels) -> Labels:
+        """Return the point that bears each label, (n_labels,), −1 for none."""
+        holder = np.full(self.n_labels, -1, dtype=np.int64)
+        labelled = np.flatnonzero(labels >= 0)
+        holder[labels[labelled]] = labelled
+        return holder
+
+    def descend(
+        self,
+        labels: Labels,
+        *,
+        nullable: bool,
+        points: Labels | None = None,
+        targets: Labels | None = None,
+    ) -> Labels:
+        """Return labels after the steepest exchanges, among some points and labels if given."""
+        changed = labels.copy()
+        kernels.descend(
+            changed,
+            self.holders(changed),
+            self.costs,
+            *self.handed,
+            self.of_label,
+            self.n_of_label,
+            np.arange(self.n_points) if points is None else points,
+            np.arange(self.n_labels) if targets is None else targets,
+            nullable,
+        )
+        return changed
+
+    def anneal(self, labels: Labels, draws: Array, hot: float, cold: float) -> Labels:
+        """Return labels after random exchanges that grow less willing to go upward."""
+        changed = labels.copy()
+        kernels.anneal(
+            changed,
+            self.holders(changed),
+            self.costs,
+            *self.handed,
+            self.of_label,
+            self.n_of_label,
+            draws,
+            hot,
+            cold,
+        )
+        return changed
+
+    def least_changes(self, labels: Labels) -> tuple[Array, Labels]:
+        """Return the least rise of energy that changes each point's label, and to which."""
+        least = np.full(self.n_points, np.inf)
+        rival = np.full(self.n_points, -1, dtype=np.int64)
+        kernels.least_changes(
+            labels.copy(),
+            self.holders(labels),
+            self.costs,
+            *self.handed,
+            self.of_label,
+            self.n_of_label,
+            INTO_FREE,
+            least,
+            rival,
+        )
+        return least, rival
+
+
+def problem_of(found: Signature, scale: float, template: Template) -> Problem:
+    """Return the costs of points with this signature, ``scale`` being theirs."""
+    n = found.n
+    mean = np.nan_to_num(found.mean / scale)
+    std = np.nan_to_num(found.std / scale)
+    weight = np.minimum(found.frames / FEWEST_FRAMES, 1.0)
+    costs = np.zeros((n, template.n, n, template.n), dtype=np.float32)
+    kernels.pair_costs(
+        mean,
+        np.log(std + DEVIATION_FLOOR),
+        DEVIATION_SHARE * std**2,
+        weight,
+        template.mean,
+        template.variance,
+        template.log_std,
+        template.log_variance,
+        UNKNOWN,
+        costs,
+    )
+    holding = [np.flatnonzero((template.quadruples == i).any(axis=1)) for i in range(template.n)]
+    n_of_label = np.array([len(quads) for quads in holding], dtype=np.int64)
+    of_label = np.zeros((template.n, max(1, int(n_of_label.max(initial=0)))), dtype=np.int64)
+    for i, quads in enumerate(holding):
+        of_label[i, : len(quads)] = quads
+    return Problem(
+        costs,
+        template.quadruples,
+        HANDED * template.handedness,
+        found.handedness,
+        of_label,
+        n_of_label,
+    )
