@@ -20,7 +20,7 @@ JOINING = "direction-joining"
 METHODS = (LIKELIEST, LEAST_SQUARES, JOINING, DEFAULT)
 LIMIT = 2.0
 ALL_NOISES = ("clean", "iid 1°", "iid 3°", "OU 1°", "OU 3°")
-LONG_NOISES = ("clean", "OU 1°")
+LONG_NOISES = ("OU 1°",)
 
 
 @dataclass(frozen=True)
