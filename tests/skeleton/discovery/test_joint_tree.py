@@ -115,11 +115,13 @@ def test_two_bodies_made_one_leave_the_rest_of_the_tree(forest):
     edge = forest.edges[-1]
     one = contracted(forest, edge.a, edge.b, forest.sizes)
     assert edge.b not in one.trees[0]
+    assert len(one.trees) == 1
     assert len(one.trees[0]) == len(forest.trees[0]) - 1
-    assert len(one.edges) == len(forest.edges) - 1
-    for body in one.trees[0][1:]:
-        parent = forest.parent(body)
-        assert one.parent(body) == (edge.a if parent == edge.b else parent)
+    kept = {frozenset({edge.a if b == edge.b else b for b in pair}) for pair in edges_of(forest)}
+    assert edges_of(one) == {pair for pair in kept if len(pair) == 2}
+    for pair, cost in one.costs.items():
+        assert edge.b not in pair
+        assert cost <= forest.costs[pair]
 
 
 def test_costs_do_not_depend_on_who_is_asked_first(recorded, true_bodies):

@@ -267,15 +267,20 @@ def rerooted(forest: Forest, root: int) -> Forest:
 
 
 def contracted(forest: Forest, into: int, body: int, sizes: tuple[int, ...]) -> Forest:
-    """Return the forest with two bodies that meet made one; the second is in no tree any more."""
+    """Return the forest with two bodies that meet made one; the second is in no tree any more.
 
-    def renamed(other: int) -> int:
-        return into if other == body else other
+    What the second would have met for less, the first now does: rivals are found anew.
+    """
 
-    edges = tuple(
-        replace(edge, a=renamed(edge.a), b=renamed(edge.b))
-        for edge in forest.edges
-        if {edge.a, edge.b} != {into, body}
-    )
-    trees = tuple(tuple(dict.fromkeys(map(renamed, tree))) for tree in forest.trees)
-    return replace(forest, trees=trees, edges=edges, sizes=sizes)
+    def renamed(pair: Pair) -> Pair:
+        a, b = (into if other == body else other for other in pair)
+        return (min(a, b), max(a, b))
+
+    costs: dict[Pair, float] = {}
+    for pair, cost in forest.costs.items():
+        a, b = renamed(pair)
+        if a != b:
+            costs[a, b] = min(cost, costs.get((a, b), np.inf))
+    pairs = [renamed(_pair(edge)) for edge in forest.edges if {edge.a, edge.b} != {into, body}]
+    made = _forest(pairs, costs, sizes)
+    return replace(made, trees=tuple(tree for tree in made.trees if body not in tree))
