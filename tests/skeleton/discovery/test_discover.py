@@ -178,6 +178,15 @@ def test_a_marker_never_seen_and_a_pair_in_one_place_are_survived(recorded, owne
     assert len(found.model.segments) == len(set(owner))
 
 
+def test_bodies_never_seen_together_are_trees_of_their_own(rng, moving_bodies):
+    points, _ = moving_bodies(rng, (4, 5), n_frames=400, noise=0.0005)
+    points[:200, :4] = np.nan
+    points[200:, 4:] = np.nan
+    found = discover(Recording(points, tuple("abcdefghi"), 50.0))
+    assert found.step.findings["trees"] == 2
+    assert set(found.model.labels) == set("efghi")
+
+
 def test_two_markers_and_bodies_of_two_are_refused(recorded, rng):
     with pytest.raises(BadRecording, match="at least 3 are needed"):
         discover(replace(recorded, markers=recorded.markers[:, :2], labels=recorded.labels[:2]))

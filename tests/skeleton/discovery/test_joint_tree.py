@@ -89,6 +89,17 @@ def test_what_moves_by_itself_is_a_tree_of_its_own(
     assert forest.trees[1] == (len(bodies) - 1,)
 
 
+@pytest.mark.parametrize("sizes", [(4, 5), (4, 3, 5)])
+def test_bodies_that_have_nothing_to_do_with_each_other_are_as_many_trees(
+    rng, moving_bodies, sizes
+):
+    points, of = moving_bodies(rng, sizes, apart=1.0, noise=0.0005)
+    bodies = [np.flatnonzero(of == k) for k in range(len(sizes))]
+    forest = find_forest(JointCosts(points, 1.0), bodies)
+    assert len(forest.trees) == len(sizes)
+    assert forest.edges == ()
+
+
 def test_another_root_turns_edges_and_nothing_else(forest):
     foot = forest.trees[0][-1]
     turned = rerooted(forest, foot)
