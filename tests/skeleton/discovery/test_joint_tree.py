@@ -122,6 +122,13 @@ def test_similar_forests_swap_doubtful_edges_only_and_stay_trees(forest):
         assert unlikely > 0
 
 
+def test_swaps_that_would_make_a_ring_are_left_out(forest, monkeypatch):
+    monkeypatch.setattr("kinesphere.skeleton.discovery.joint_tree.SWAPPED", 0.99)
+    found = [other for other, _ in similar_forests(forest, 0)]
+    assert len(found) > 50
+    assert all(len(other.trees) == 1 for other in found)
+
+
 def test_two_bodies_made_one_leave_the_rest_of_the_tree(forest):
     edge = forest.edges[-1]
     one = contracted(forest, edge.a, edge.b, forest.sizes)
