@@ -9,7 +9,13 @@ from hypothesis import settings as trials
 from hypothesis import strategies as st
 from numpy.testing import assert_array_equal
 
-from kinesphere.errors import BadModel, BadRecording, BadSetting, UnreadableFile
+from kinesphere.errors import (
+    AmbiguousFacing,
+    BadModel,
+    BadRecording,
+    BadSetting,
+    UnreadableFile,
+)
 from kinesphere.io import read
 from kinesphere.pipeline import (
     STAGES,
@@ -25,7 +31,7 @@ from kinesphere.pipeline import (
 )
 from kinesphere.pipeline.values import type_as_text, value_from
 from kinesphere.report import rms
-from kinesphere.synthetic import make_performance
+from kinesphere.synthetic import HAND, make_performance, together
 
 EVERY = [
     (stage, f, annotation, value)
@@ -141,10 +147,55 @@ def test_a_model_that_is_given_is_taken():
     assert model_for(performance.recording, performance.model, None) is performance.model
 
 
+@pytest.fixture(scope="module")
+def person():
+    """Return a person whose labels no model knows."""
+    return make_performance(np.random.default_rng(7), rate=25, calibration_s=40, free_s=10)
+
+
 @pytest.mark.parametrize("name", [None, "none"])
-def test_motion_alone_is_said_not_to_be_there_yet(name):
-    with pytest.raises(BadModel, match=r"kinesphere model .* --model"):
-        solve(small().recording, name)
+def test_without_a_model_the_motion_tells_bodies_and_joints(person, name):
+    solution = solve(person.recording, name, calibration=person.calibration)
+    assert solution.model_name == "motion alone"
+    assert set(solution.skeleton.limb_names) == set(person.skeleton.limb_names)
+    assert set(solution.skeleton.joint_names) == set(person.skeleton.joint_names)
+    step = next(step for step in solution.history if step.name == "discovery")
+    assert "discovery" in solution.seconds
+    assert any("no built-in model fits" in text for text in step.warnings) == (name is None)
+
+
+def test_of_two_people_a_subject_is_solved_alone(person):
+    both = together({"Anna": person, "Ben": person})
+    away = np.array(both.markers)
+    n = person.recording.n_markers
+    away[:, n:] = away[::-1, n:] + [2.0, 0.0, 0.0]
+    both = replace(both, markers=away)
+    solution = solve(both, "none", subject="Ben")
+    assert all(label.startswith("Ben:") for label in solution.recording.labels)
+    with pytest.raises(BadRecording, match="subjects are Anna, Ben"):
+        solve(both, "none", subject="Carl")
+
+
+def test_what_has_no_front_faces_an_axis_of_the_world_and_says_so():
+    performance = make_performance(
+        np.random.default_rng(1), plan=HAND, rate=25, calibration_s=90, free_s=10
+    )
+    solution = solve(performance.recording, "none")
+    assert len(solution.skeleton.limbs) == len(HAND.limbs)
+    assert any("no front of its own" in text for text in solution.warnings)
+    with pytest.raises(AmbiguousFacing):
+        solve(performance.recording, "none", facing="feet")
+
+
+def test_hidden_markers_are_filled_where_that_is_asked_for(person):
+    markers = np.array(person.recording.markers)
+    markers[300:320, 0] = np.nan
+    spoilt = replace(person.recording, markers=markers)
+    settings = settings_from({"skeleton": {"fill_markers": "true"}})
+    solution = solve(spoilt, person.model, settings=settings)
+    assert solution.recording.seen.all()
+    assert any(step.name == "filling" for step in solution.history)
+    assert not solve(spoilt, person.model).recording.seen.all()
 
 
 def test_an_unknown_model_is_named():
@@ -192,7 +243,7 @@ def test_one_change_leaves_all_else_alone():
     [
         ({"axis": {"method": "pca"}}, r"no stage is called 'axis' \(did you mean axes\?\)"),
         ({"axes": {"metod": "pca"}}, r"no setting 'metod' \(did you mean method\?\); known are"),
-        ({"zzz": {}}, "no stage is called 'zzz'; known are orientation"),
+        ({"zzz": {}}, "no stage is called 'zzz'; known are discovery, orientation"),
         ({"axes": "pca"}, "axes is a stage"),
         ({"axes": {"restarts": "2.5"}}, "axes.restarts is '2.5'; it must be a whole number"),
         ({"axes": {"restarts": 0}}, "axes.restarts is 0; it must be at least 1"),

@@ -106,7 +106,6 @@ def test_words_that_cannot_be_meant(words, said, call):
     ("options", "said"),
     [
         (["--model", "cmu14"], ["cmu14", "built in are cmu41, plugin-gait"]),
-        (["--model", "none"], ["motion alone", "kinesphere model"]),
         (["--subject", "Nobody"], ["Nobody"]),
         (["--calibration", "9"], ["START:END"]),
         (["--calibration", "5:2"], ["START:END"]),

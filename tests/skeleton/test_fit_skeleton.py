@@ -173,10 +173,11 @@ def cmu41_at_start(performance, n):
 
 
 def test_gaps_are_answered_with_what_is_left(cmu41):
-    """One marker of two, a limb for a moment, a limb for long: joint-aided, filled, unseen."""
+    """One marker of two, a limb for a moment, for long between joints, for long at an end."""
     recording = hide(cmu41.recording, slice(100, 140), ("LKNE",))
     recording = hide(recording, slice(300, 305), ("RSHN", "RANK"))
     recording = hide(recording, slice(500, 600), ("RUPA", "RELB"))
+    recording = hide(recording, slice(700, 800), ("LFHD", "RFHD", "LBHD", "RBHD"))
     motion = fit_skeleton(recording, built_in_model("cmu41"))
     at = motion.skeleton.limb_names.index
     thigh, shank, arm = (
@@ -184,7 +185,8 @@ def test_gaps_are_answered_with_what_is_left(cmu41):
     )
     assert set(thigh[100:140]) <= {PoseFlag.JOINT_AIDED, PoseFlag.TWIST_UNKNOWN, PoseFlag.FILLED}
     assert (shank[300:305] == PoseFlag.FILLED).all()
-    assert (arm[505:595] == PoseFlag.UNSEEN).all()
+    assert (arm[505:595] == PoseFlag.TWIST_UNKNOWN).all()
+    assert (motion.flags[705:795, at("head")] == PoseFlag.UNSEEN).all()
     unseen = motion.flags == PoseFlag.UNSEEN
     assert np.isnan(motion.rotations[unseen]).all()
     assert np.isfinite(motion.rotations[~unseen]).all()

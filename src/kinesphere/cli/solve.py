@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def solve(
-    file: Annotated[Path, typer.Argument(help="A labelled recording.")],
+    file: Annotated[Path, typer.Argument(help="A recording, labelled or not.")],
     output: Annotated[
         Path,
         typer.Option("-o", "--output", metavar="DIR", help="Folder for everything that is found."),
@@ -31,7 +31,7 @@ def solve(
             "--model",
             metavar="MODEL",
             help="A model file or the name of a built-in one; without it, the built-in one that "
-            "the labels cover.",
+            "the labels cover, if any. 'none' takes bodies and joints from motion alone.",
         ),
     ] = None,
     subject: SubjectOption = None,
@@ -68,7 +68,8 @@ def solve(
 
     Examples: [bold]kinesphere solve walk.c3d -o walk[/bold],
     [bold]kinesphere solve range.c3d --calibration 0:60 -o range[/bold],
-    [bold]kinesphere solve walk.c3d --calibration-from range -o walk[/bold]
+    [bold]kinesphere solve walk.c3d --calibration-from range -o walk[/bold],
+    [bold]kinesphere solve raw.c3d --model none -o raw[/bold]
     """
     if calibration is not None and calibration_from is not None:
         raise BadArgument("--calibration and --calibration-from exclude each other; give one")

@@ -48,6 +48,19 @@ def _labelling(found: dict[str, Any], summary: dict[str, Any]) -> str:
     return text
 
 
+def _discovery(found: dict[str, Any], summary: dict[str, Any]) -> str:
+    trees, n_loose = found.get("trees", 1), len(found.get("loose", ()))
+    text = f"{found.get('bodies_found')} bodies from motion alone"
+    if trees > 1:
+        text += f" in {trees} trees"
+    named = sum(not limb.startswith("limb_") for limb in summary["limbs"])
+    sure = found.get("names_confidence")
+    text += f"; {named} limbs named" + ("" if sure is None else f" (confidence {sure:.2f})")
+    if n_loose:
+        text += f"; {n_loose} markers loose"
+    return text
+
+
 def _orientation(found: dict[str, Any], _: dict[str, Any]) -> str:
     text = f"up was {found.get('up')}, {source_in_words(found.get('up_from'))}"
     return text + ("; mirrored, turned right" if found.get("mirrored") else "")
@@ -117,6 +130,7 @@ def _mm(value: float) -> str:
 _WORDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], str]] = {
     "read": _read,
     "labelling": _labelling,
+    "discovery": _discovery,
     "orientation": _orientation,
     "skeleton": _skeleton,
     "normalization": _normalization,

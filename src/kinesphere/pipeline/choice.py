@@ -1,7 +1,6 @@
 """Which topological model a recording is solved with."""
 
 from kinesphere.data import Recording, TopologicalModel
-from kinesphere.errors import BadModel
 from kinesphere.labelling import (
     built_in_model,
     built_in_models,
@@ -15,42 +14,38 @@ MOTION_ALONE = "none"
 
 def model_for(
     recording: Recording, model: TopologicalModel | str | None, subject: str | None
-) -> TopologicalModel:
+) -> TopologicalModel | None:
     """Return the model itself, the built-in one of that name, or the one the labels cover.
+
+    None where motion alone is asked for, or no built-in model fits: then bodies and joints are
+    found from the motion.
 
     Raises
     ------
     BadModel
-        If there is no such name, no built-in model fits, or motion alone is asked for.
+        If there is no built-in model of that name.
     """
     if isinstance(model, TopologicalModel):
         return model
     if model == MOTION_ALONE:
-        raise BadModel(f"solving from motion alone is not yet available; {_REMEDY}")
+        return None
     if model is not None:
         return built_in_model(model)
-    chosen = choose_model(recording, subject)
-    if chosen is None:
-        raise BadModel(
-            f"no built-in model fits these {recording.n_markers} labels "
-            f"({_nearest(recording, subject)}), and solving from motion alone is not yet "
-            f"available; {_REMEDY}"
-        )
-    return chosen
+    return choose_model(recording, subject)
 
 
-_REMEDY = (
-    "if the person wears one of these layouts without some limbs, name it with --model: limbs "
-    "without markers are left out; else say which marker sits on which segment: 'kinesphere model "
-    "FILE --segments SEGMENTS -o MODEL.json', then pass --model MODEL.json"
-)
-
-
-def _nearest(recording: Recording, subject: str | None) -> str:
+def why_no_model(recording: Recording, subject: str | None) -> str:
+    """Return how far the labels are from every built-in model, for a person."""
     if subject is None:
         subjects = find_subjects(recording)
         subject = subjects[0] if len(subjects) == 1 else None
     shares = {
         name: coverage(recording, built_in_model(name), subject) for name in built_in_models()
     }
-    return ", ".join(f"{name} {share:.0%}" for name, share in shares.items()) + " of its labels"
+    nearest = ", ".join(f"{name} {share:.0%}" for name, share in shares.items())
+    return (
+        f"no built-in model fits these {recording.n_markers} labels ({nearest} of its labels): "
+        "bodies and joints are from motion alone; if the person wears one of these layouts "
+        "without some limbs, name it with --model: limbs without markers are left out; a model of "
+        "your own says which marker sits on which segment ('kinesphere model')"
+    )

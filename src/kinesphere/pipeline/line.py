@@ -12,16 +12,18 @@ from kinesphere.errors import BadRecording
 from kinesphere.labelling import match_labels
 from kinesphere.normalization import Facing, normalize
 from kinesphere.parameterization import parameterize
-from kinesphere.pipeline.choice import model_for
+from kinesphere.pipeline.choice import MOTION_ALONE, model_for
 from kinesphere.pipeline.doubts import calibration_doubts, with_checks
+from kinesphere.pipeline.motion_alone import discovered, normalized_somehow
 from kinesphere.pipeline.settings import Settings
 from kinesphere.quality import orient
-from kinesphere.skeleton import fit_skeleton
+from kinesphere.skeleton import fill_markers, fit_skeleton
 
 Progress: TypeAlias = Callable[[str, int, int], None]
 """Called with the stage about to run, its number from 0, and how many there are."""
 
 STAGES = ("labelling", "orientation", "skeleton", "normalization", "parameterization")
+"""In this order; from motion alone the first one is ``discovery`` instead."""
 
 
 def solve(
@@ -43,7 +45,8 @@ def solve(
         As read: in the axes of its file.
     model
         Which marker sits on which limb; the name of a built-in one; None to choose the built-in
-        one that the recording covers, if any; ``"none"`` for motion alone.
+        one that the recording covers, if any; ``"none"`` for motion alone, as it is where none
+        fits.
     subject
         The label prefix of the person, where the recording holds several.
     calibration
@@ -63,7 +66,7 @@ def solve(
     BadRecording
         If there is nothing to solve.
     BadModel
-        If no model fits, or the one that was asked for does not.
+        If the model that was asked for does not fit.
     DegenerateMotion, AmbiguousFacing
         If the motion does not determine what a stage needs.
     """
@@ -71,15 +74,30 @@ def solve(
     if recording.n_frames == 0 or not recording.seen.any():
         raise BadRecording("the recording holds no marker position: nothing to solve")
     clock = _Clock(progress)
-    with clock.stage("labelling"):
-        chosen = model_for(recording, model, subject)
-        labelled = match_labels(recording, chosen, subject)
+    given = model_for(recording, model, subject)
+    with clock.stage("discovery" if given is None else "labelling"):
+        if given is None:
+            labelled, chosen = discovered(
+                recording,
+                subject,
+                settings.discovery,
+                settings.skeleton,
+                asked=model == MOTION_ALONE,
+            )
+        else:
+            labelled, chosen = match_labels(recording, given, subject), given
     with clock.stage("orientation"):
         oriented = with_checks(orient(labelled, chosen, settings.orientation))
     with clock.stage("skeleton"):
-        motion = fit_skeleton(oriented, chosen, settings.skeleton)
+        # markers that were found loose are not to be taken in again
+        measured = settings.skeleton if given else replace(settings.skeleton, adopt_markers=False)
+        motion = fit_skeleton(oriented, chosen, measured)
+        if settings.skeleton.fill_markers:
+            oriented = fill_markers(oriented, motion)
+            motion = replace(motion, history=(*motion.history, oriented.history[-1]))
     with clock.stage("normalization"):
-        motion = normalize(motion, settings.normalization, facing)
+        aligned = normalize if given else normalized_somehow
+        motion = aligned(motion, settings.normalization, facing)
     with clock.stage("parameterization"):
         reuse = _skeleton(calibration_from)
         if doubts := calibration_doubts(motion, calibration, reuse):
@@ -111,7 +129,7 @@ class _Clock:
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         if self.progress is not None:
-            self.progress(name, STAGES.index(name), len(STAGES))
+            self.progress(name, len(self.seconds), len(STAGES))
         start = time.perf_counter()
         yield
         self.seconds[name] = time.perf_counter() - start

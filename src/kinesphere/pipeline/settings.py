@@ -12,13 +12,14 @@ from kinesphere.normalization import NormalizationSettings
 from kinesphere.parameterization import ParameterizationSettings
 from kinesphere.pipeline.values import value_from
 from kinesphere.quality import OrientationSettings
-from kinesphere.skeleton import SkeletonSettings
+from kinesphere.skeleton import DiscoverySettings, SkeletonSettings
 
 
 @dataclass(frozen=True)
 class Settings:
     """The settings of every stage of the line."""
 
+    discovery: DiscoverySettings = field(default_factory=DiscoverySettings)
     orientation: OrientationSettings = field(default_factory=OrientationSettings)
     skeleton: SkeletonSettings = field(default_factory=SkeletonSettings)
     normalization: NormalizationSettings = field(default_factory=NormalizationSettings)

@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 import kinesphere
 from kinesphere.data import Solution
+from kinesphere.report.bodies import find_bodies
 from kinesphere.report.notices import names_of, notices
 from kinesphere.report.scene import scene_from_solution
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
@@ -46,6 +47,7 @@ def report_html(solution: Solution, title: str = "") -> str:
         charts=chart_order(joints),
         limbs=limb_rows(solution),
         steps=step_cards(solution),
+        bodies=bodies_section(solution),
         stride=scene["stride"],
         shown_rate=f"{scene['rate']:g}",
         style=Markup(_asset("page.css")),
@@ -54,6 +56,14 @@ def report_html(solution: Solution, title: str = "") -> str:
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
         scene=Markup(_json_for_script(scene)),
     )
+
+
+def bodies_section(solution: Solution) -> Markup:
+    """Return what was found from motion alone as HTML; empty where a model was given."""
+    bodies = find_bodies(solution)
+    if bodies is None:
+        return Markup()
+    return Markup(_environment().from_string(_asset("bodies.html.j2")).render(found=bodies))
 
 
 def _json_for_script(found: Any) -> str:

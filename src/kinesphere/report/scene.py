@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array, Codes, Joint, JointFlag, Mask, Skeleton, Solution
+from kinesphere.report.bodies import marker_colours
 from kinesphere.report.packing import pack
 
 SCREEN_RATE = 60.0
@@ -35,6 +36,7 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
     stride = frame_stride(motion.n_frames, motion.rate)
     shown = np.arange(0, motion.n_frames, stride)
     columns = _shown_markers(solution)
+    colours = marker_colours(solution)
     used = {label for limb in motion.skeleton.limbs for label in limb.markers}
     return {
         "rate": motion.rate / stride,
@@ -42,7 +44,12 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
         "first_frame": motion.first_frame,
         "n_frames": len(motion.rotations[shown]),
         "markers": [
-            {"label": recording.labels[c], "used": recording.labels[c] in used} for c in columns
+            {
+                "label": recording.labels[c],
+                "used": recording.labels[c] in used,
+                "colours": colours.get(recording.labels[c], []),
+            }
+            for c in columns
         ],
         "limbs": _limbs(solution.skeleton),
         "joints": _joints(solution.skeleton),

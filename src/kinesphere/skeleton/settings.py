@@ -89,5 +89,11 @@ class SkeletonSettings:
         high=100.0,
     )
 
+    fill_markers: bool = setting(
+        False,
+        "put hidden markers where their limb's pose says they are, in the recording that is "
+        "written",
+    )
+
     def __post_init__(self) -> None:
         check_settings(self)

@@ -12,6 +12,7 @@ from kinesphere.skeleton.chain import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud, next_normals
 from kinesphere.skeleton.poses import BLOCK, Neighbour, Poses, aim, bridge, fit_poses
 from kinesphere.skeleton.settings import SkeletonSettings
+from kinesphere.skeleton.spanned import span
 from kinesphere.skeleton.tree import Tree
 
 
@@ -93,6 +94,8 @@ def _solve_limb(
         fit_poses(body, own, near, min_spread, poses)
         if helpers := _helpers(body.name, measured, min_spread, poses):
             fit_poses(body, own, (*near, *helpers), min_spread, poses)
+            if parent is not None and centre is not None:
+                span(poses, body, parent, centre, helpers[0], longest)
         bridge(poses, body, parent, centre, longest)
     if parent is None or centre is None or (poses.flags != PoseFlag.UNSEEN).all():
         return

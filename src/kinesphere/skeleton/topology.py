@@ -13,7 +13,7 @@ from kinesphere.geometry.algebraic_centres import score_centre, sphere_centre
 from kinesphere.geometry.rigid import RigidFit, into_frame
 from kinesphere.skeleton.body import measure_shape
 
-NEARNESS = 0.05
+NEARNESS = 0.01
 """Cost in m of each metre between a joint and the nearest markers: limbs meet where they are."""
 OUTLIER = 0.003
 """m, residual at which a sighting within its limb starts to be doubted."""
@@ -39,9 +39,10 @@ def limb_poses(clouds: Mapping[str, Array]) -> dict[str, RigidFit]:
 def joint_cost(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit | None) -> float:
     """Return how badly two limbs look like neighbours, in m; infinite if never seen together.
 
-    The better of two views: how far apart the joint's two images are (SCoRE where both limbs have
-    poses, spheres about a common centre where one has), and how steady one marker's distances to
-    the other limb are (an acromion near an upper arm). Both grow with the way to the markers.
+    The better of two views: how far apart the joint's two images are in each direction (SCoRE where
+    both limbs have poses, spheres about a common centre where one has), and how steady one marker's
+    distances to the other limb are (an acromion near an upper arm). Both grow with the way from
+    marker to marker by the joint.
 
     Parameters
     ----------
@@ -66,7 +67,7 @@ def _centre_cost(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit |
         centre = sphere_centre(by_a, np.median(known, axis=0), ridge=1e-2)
         off = _deviations(np.linalg.norm(by_a - centre, axis=2))
         own = into_frame(pose_a.rotations, pose_a.shifts, a)
-        far = max(_nearest(own, centre), _nearest(by_a, centre))
+        far = _nearest(own, centre) + _nearest(by_a, centre)
         return float(np.sqrt(np.mean(off**2))) + NEARNESS * far
     relative = np.swapaxes(pose_a.rotations, 1, 2) @ pose_b.rotations
     shifts = into_frame(pose_a.rotations, pose_a.shifts, pose_b.shifts[:, None])[:, 0]
@@ -75,7 +76,7 @@ def _centre_cost(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit |
         return np.inf
     own_a = into_frame(pose_a.rotations, pose_a.shifts, a)
     own_b = into_frame(pose_b.rotations, pose_b.shifts, b)
-    return rms + NEARNESS * (_nearest(own_a, in_a) + _nearest(own_b, in_b))
+    return rms / 3**0.5 + NEARNESS * (_nearest(own_a, in_a) + _nearest(own_b, in_b))
 
 
 def _nearest(points: Array, centre: Array) -> float:

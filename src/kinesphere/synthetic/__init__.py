@@ -3,10 +3,12 @@
 from kinesphere.synthetic.actor import Actor as Actor
 from kinesphere.synthetic.actor import make_actor as make_actor
 from kinesphere.synthetic.bodies import HUMAN as HUMAN
+from kinesphere.synthetic.bodies import PLAYER as PLAYER
 from kinesphere.synthetic.creatures import HAND as HAND
 from kinesphere.synthetic.creatures import QUADRUPED as QUADRUPED
 from kinesphere.synthetic.performance import Performance as Performance
 from kinesphere.synthetic.performance import make_performance as make_performance
+from kinesphere.synthetic.performance import together as together
 from kinesphere.synthetic.plan import BodyPlan as BodyPlan
 from kinesphere.synthetic.plan import LimbPlan as LimbPlan
 from kinesphere.synthetic.plan import Movement as Movement

@@ -9,6 +9,7 @@ doi:10.1016/0021-9290(90)90054-7), shoulders .115 (biacromial .259, less the acr
 Ranges of motion stay inside those of healthy adults (Winter 2009, chapter 5; Kapandji 1974).
 """
 
+from dataclasses import replace
 from math import cos, radians, sin
 
 from kinesphere.synthetic.plan import BodyPlan, LimbPlan, Movement, mirrored_plan
@@ -122,3 +123,25 @@ HUMAN = BodyPlan(
     sole=0.025,
 )
 """Twelve limbs, eleven joints; the trunk, pelvis included, is the root."""
+
+PLAYER = replace(
+    HUMAN,
+    name="player",
+    limbs=(
+        *HUMAN.limbs,
+        LimbPlan(
+            name="racket",
+            parent="right_forearm",
+            joint="grip",
+            canonical=_DOWN,
+            length=0.39,
+            stands=(0.5, -1.0, 0.0),
+            movements=(
+                Movement("swing", _LATERAL, -40, 40),
+                Movement("tilt", _AHEAD, -30, 30),
+            ),
+            twist=(-40, 40),
+        ),
+    ),
+)
+"""A person with a racket of 68 cm, held in a hand that has no markers."""

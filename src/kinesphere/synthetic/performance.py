@@ -1,5 +1,6 @@
 """A whole performance: an actor moves, cameras see its markers, and the truth is kept."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -160,6 +161,34 @@ def make_performance(
         calibration=(0.0, calibration_s),
         moving_about=course.moving,
         actor=actor,
+    )
+
+
+def together(performances: Mapping[str, Performance]) -> Recording:
+    """Return one recording of several people in one room, who know nothing of each other.
+
+    Parameters
+    ----------
+    performances
+        Name → performance; all of the same length and rate. Labels become ``name:label``.
+
+    Raises
+    ------
+    BadSetting
+        If their lengths or rates differ.
+    """
+    recordings = {name: performance.recording for name, performance in performances.items()}
+    kinds = {(recording.n_frames, recording.rate) for recording in recordings.values()}
+    if len(kinds) != 1:
+        raise BadSetting("performances differ in length or rate; one recording needs them alike")
+    (_, rate) = kinds.pop()
+    labels = tuple(f"{name}:{label}" for name, r in recordings.items() for label in r.labels)
+    return Recording(
+        markers=np.concatenate([r.markers for r in recordings.values()], axis=1),
+        labels=labels,
+        rate=rate,
+        up="+y",
+        history=(Step("synthetic", {"people": list(recordings)}, version=__version__),),
     )
 
 

@@ -202,17 +202,23 @@ class Player extends Figure {
       const p = this.point("markers", i, frame);
       const at = p && camera.project(p);
       if (!at) return;
-      const radius = Math.max(1.5, (marker.used ? 0.011 : 0.007) * at[2]);
+      const radius = Math.max(1.5, (marker.colours.length ? 0.015 : marker.used ? 0.011 : 0.007) * at[2]);
       items.push({
         depth: at[3] - 0.03,
         paint: () => {
-          context.fillStyle = marker.used ? theme.marker : theme.faint;
+          const [own, next] = marker.colours;
+          context.fillStyle = own || (marker.used ? theme.marker : theme.faint);
           context.strokeStyle = theme.outline;
           context.lineWidth = 0.75;
           context.beginPath();
           context.arc(at[0], at[1], radius, 0, 2 * Math.PI);
           context.fill();
           context.stroke();
+          if (!next) return; // a marker at a joint wears the other limb's colour inside
+          context.fillStyle = next;
+          context.beginPath();
+          context.arc(at[0], at[1], 0.5 * radius, 0, 2 * Math.PI);
+          context.fill();
         },
       });
     });

@@ -1,0 +1,1 @@
+"""A skeleton from motion alone, against partitions, trees, joints and names that are known."""

@@ -1,0 +1,88 @@
+"""``python -m benchmarks.accuracy.bodies``: run, print, write. Exit code 1 if a bar is missed."""
+
+import argparse
+import json
+import math
+import sys
+from dataclasses import asdict
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+from benchmarks.accuracy.bodies.arm import arm_figures
+from benchmarks.accuracy.bodies.cases import ROOT, actor_case, creature_cases, folder, real_cases
+from benchmarks.accuracy.bodies.cost import Cost, cost_rows, plot
+from benchmarks.accuracy.bodies.functional import functional_rows
+from benchmarks.accuracy.bodies.hiding import hiding_rows
+from benchmarks.accuracy.bodies.page import bars, page
+from benchmarks.accuracy.bodies.partitions import Row, rows
+from kinesphere import __version__
+
+
+def main() -> int:
+    """Run every section; write ``skeleton.json``, ``skeleton.md`` and the plot."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--actors", type=int, default=10)
+    arguments = parser.parse_args()
+    if not folder().is_dir():
+        print(f"no real recordings at {folder()}; set KINESPHERE_DATA", file=sys.stderr)
+        return 2
+    partitions: list[Row] = []
+    for row in rows(real_cases()):
+        partitions.append(_told(row))
+    for seed in range(3):
+        partitions += [_told(row) for row in rows(creature_cases(seed))]
+    for spoilt in (False, True):
+        for seed in range(arguments.actors):
+            case = actor_case(seed, spoilt=spoilt)
+            partitions += [_told(row) for row in rows([case], centres=True)]
+    costs = cost_rows()
+    found: dict[str, Any] = {
+        "version": __version__,
+        "peer": _peer(),
+        "partitions": [asdict(row) for row in partitions],
+        "arm": arm_figures(),
+        "functional": [asdict(row) for row in functional_rows()],
+        "hiding": [asdict(row) for row in hiding_rows()],
+        "cost": [asdict(row) for row in costs],
+    }
+    _write(found, costs)
+    missed = [bar for bar in bars(found) if not bar.met]
+    for bar in missed:
+        print(f"{bar.what}: {bar.found}; {bar.wanted} is wanted", file=sys.stderr)
+    return 1 if missed else 0
+
+
+def _write(found: dict[str, Any], costs: list[Cost]) -> None:
+    text = page(found)
+    print(text)
+    results, documents = ROOT / "benchmarks" / "results", ROOT / "docs"
+    (documents / "results" / "skeleton.md").write_text(text, encoding="utf-8")
+    (documents / "images" / "skeleton-cost.svg").write_text(plot(costs), encoding="utf-8")
+    (results / "skeleton.json").write_text(
+        json.dumps(_plain(found), indent=1, allow_nan=False) + "\n", encoding="utf-8"
+    )
+
+
+def _told(row: Row) -> Row:
+    print(f"\r{row.case:<44} {row.method:<9}", end="", file=sys.stderr)
+    return row
+
+
+def _peer() -> str:
+    try:
+        return f"biobuddy {version('biobuddy')}"
+    except PackageNotFoundError:
+        return ""
+
+
+def _plain(value: Any) -> Any:
+    """Return what JSON can hold; NaN becomes null, digits that mean nothing are cut."""
+    if isinstance(value, float):
+        return round(value, 5) if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _plain(v) for key, v in value.items()}
+    return [_plain(v) for v in value] if isinstance(value, list) else value
+
+
+if __name__ == "__main__":
+    sys.exit(main())

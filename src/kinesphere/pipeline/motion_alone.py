@@ -1,0 +1,106 @@
+"""The line where no model is given: bodies found first, and a front for what has none."""
+
+from dataclasses import replace
+
+from kinesphere import __version__
+from kinesphere.data import Motion, Recording, Step, TopologicalModel
+from kinesphere.errors import AmbiguousFacing, BadRecording, DegenerateMotion
+from kinesphere.labelling import find_subjects
+from kinesphere.normalization import Facing, NormalizationSettings, normalize
+from kinesphere.pipeline.choice import why_no_model
+from kinesphere.skeleton import DiscoverySettings, SkeletonSettings, discover
+
+FRONTS: tuple[Facing, ...] = ("+x", "+z", "+y")
+"""Where a body faces that has no front of its own, a hand or a crane: x by convention, or the first
+of the world's axes that does not lie across its plane."""
+
+
+def discovered(
+    recording: Recording,
+    subject: str | None,
+    settings: DiscoverySettings,
+    skeleton: SkeletonSettings,
+    *,
+    asked: bool,
+) -> tuple[Recording, TopologicalModel]:
+    """Return the recording and the model that its motion tells.
+
+    Parameters
+    ----------
+    subject
+        Only markers whose label has this prefix take part; all, if None.
+    asked
+        True where motion alone was asked for, False where it is for want of a model.
+
+    Raises
+    ------
+    BadRecording, DegenerateMotion
+        As `kinesphere.skeleton.discover` does; and for a subject that no label names.
+    """
+    if subject is not None:
+        recording = _of_subject(recording, subject)
+    found = discover(recording, settings, skeleton)
+    step = found.step
+    if not asked:
+        step = replace(step, warnings=(why_no_model(recording, subject), *step.warnings))
+    return replace(recording, history=(*recording.history, step)), found.model
+
+
+def normalized_somehow(
+    motion: Motion, settings: NormalizationSettings, facing: Facing | None
+) -> Motion:
+    """Normalize a motion that may have neither front nor enough joints for a body frame.
+
+    Where nothing tells a front and nobody said one, the body faces an axis of the world, aloud.
+
+    Raises
+    ------
+    AmbiguousFacing, DegenerateMotion
+        If the facing that was asked for does not help, or none does.
+    """
+    try:
+        return normalize(motion, settings, facing)
+    except (AmbiguousFacing, DegenerateMotion) as missing:
+        if facing is not None:
+            raise
+        turned, front = _facing_an_axis(motion, settings)
+        step = Step(
+            "front",
+            warnings=(
+                f"the body has no front of its own, so it faces the world's {front}: its frames "
+                "and the signs of its angles mean nothing beyond this recording "
+                f"({_first(missing)})",
+            ),
+            version=__version__,
+        )
+        return replace(turned, history=(*turned.history, step))
+
+
+def _facing_an_axis(motion: Motion, settings: NormalizationSettings) -> tuple[Motion, Facing]:
+    for front in FRONTS[:-1]:
+        try:
+            return normalize(motion, settings, front), front
+        except AmbiguousFacing:
+            continue
+    return normalize(motion, settings, FRONTS[-1]), FRONTS[-1]
+
+
+def _first(error: Exception) -> str:
+    return str(error).partition(";")[0].partition(":")[0]
+
+
+def _of_subject(recording: Recording, subject: str) -> Recording:
+    kept = [
+        column
+        for column, label in enumerate(recording.labels)
+        if label.rpartition(":")[0].strip() == subject
+    ]
+    if not kept:
+        there = ", ".join(find_subjects(recording)) or "none: labels have no prefix"
+        raise BadRecording(f"no marker belongs to subject {subject!r}; subjects are {there}")
+    return replace(
+        recording,
+        markers=recording.markers[:, kept],
+        labels=tuple(recording.labels[column] for column in kept),
+        residuals=None if recording.residuals is None else recording.residuals[:, kept],
+    )

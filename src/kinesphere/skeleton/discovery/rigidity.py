@@ -1,0 +1,125 @@
+"""Which markers are worth grouping, and how steady the distances between them are."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array, Mask
+from kinesphere.errors import BadRecording, DegenerateMotion
+from kinesphere.geometry.pair_distances import pair_distances
+
+LEAST_SHARE = 0.05
+"""Share of the frames in which a marker must be seen to be grouped."""
+LEAST_FRAMES = 10
+"""Frames that must show a marker, or two of them together, to say anything."""
+STILL = 3.0
+"""Where no distance wanders so many times more than the steadiest ones do, nothing has moved."""
+ALL_ONE = 0.02
+"""m: a thing whose every distance wanders less than its noise, and that itself travels this far
+between frames of the sample, is one rigid body rather than a person who stands still."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rigidity:
+    """How markers wander relative to each other, over a sample of the frames."""
+
+    points: Array
+    """(n_sample, n, 3) m in the world; NaN where not seen."""
+    mean: Array
+    """(n, n) m."""
+    wander: Array
+    """(n, n) m, standard deviation of each distance, its outer 5 % at either end left out; NaN
+    where two markers are hardly ever seen together."""
+    noise: float
+    """m, wander of the distance to a marker's steadiest neighbour, median over markers: what is
+    steady in this recording."""
+
+    def unlikeness(self, near: float) -> Array:
+        """Return (n, n) m: wander, the larger the farther apart two markers are.
+
+        Marker sets put what belongs to one body near to each other; ``near`` (m) is the distance at
+        which that begins to matter.
+        """
+        return np.asarray(self.wander * np.sqrt(1 + (self.mean / near) ** 2))
+
+    @property
+    def is_one_body(self) -> bool:
+        """Whether no distance wanders beyond what is steady: nothing here moves by itself."""
+        return self.most <= STILL * self.noise
+
+    @property
+    def most(self) -> float:
+        """m, what the 5 % of distances that wander most exceed."""
+        known = self.wander[np.triu_indices(len(self.wander), 1)]
+        return float(np.percentile(known[np.isfinite(known)], 95))
+
+
+def worth_grouping(seen: Mask, rate: float, ghost_s: float) -> Mask:
+    """Return which markers are seen often and long enough, (n_frames, n) → (n,).
+
+    Reflections live for tenths of a second; a body's marker is seen at least once for longer.
+    """
+    n_frames = len(seen)
+    share = seen.sum(axis=0) / max(1, seen.any(axis=1).sum())
+    stretch = min(ghost_s * rate, n_frames / 2)
+    return np.asarray((share >= LEAST_SHARE) & (longest_runs(seen) >= stretch))
+
+
+def longest_runs(seen: Mask) -> NDArray[np.intp]:
+    """Return the longest run of frames that show each marker, (n_frames, n) → (n,)."""
+    longest = np.zeros(seen.shape[1], dtype=np.intp)
+    for m, column in enumerate(seen.T):
+        edges = np.flatnonzero(np.diff(np.r_[0, column.astype(np.int8), 0]))
+        longest[m] = max((edges[1::2] - edges[::2]).tolist(), default=0)
+    return longest
+
+
+def measure_rigidity(points: Array) -> Rigidity:
+    """Return how steady all distances are.
+
+    Parameters
+    ----------
+    points : (n_sample, n, 3) m
+        Markers that are seen; NaN where one is not.
+
+    Raises
+    ------
+    BadRecording
+        If there are fewer than three markers or ten frames.
+    DegenerateMotion
+        If the markers hardly move relative to each other, nor as a whole.
+    """
+    n_frames, n = points.shape[:2]
+    if n < 3 or n_frames < LEAST_FRAMES:
+        raise BadRecording(
+            f"{n} markers in {n_frames} frames; bodies are found from at least 3 markers in "
+            f"{LEAST_FRAMES} frames"
+        )
+    found = pair_distances(points)
+    wander = np.where(found.frames >= LEAST_FRAMES, found.trimmed_std, np.nan)
+    alone = wander + np.diag(np.full(n, np.inf))
+    steadiest = np.nanmin(np.where(np.isfinite(alone), alone, np.inf), axis=1)
+    steady = steadiest[np.isfinite(steadiest)]
+    if not len(steady):
+        raise BadRecording("no two markers are ever seen together in ten frames")
+    rigidity = Rigidity(points, found.mean, wander, float(np.median(steady)))
+    _check_motion(rigidity)
+    return rigidity
+
+
+def _check_motion(rigidity: Rigidity) -> None:
+    if rigidity.is_one_body and travels(rigidity.points) < ALL_ONE:
+        raise DegenerateMotion(
+            "the markers hardly move relative to each other (distances wander by "
+            f"{rigidity.most * 1e3:.1f} mm, {rigidity.noise * 1e3:.1f} mm within bodies): nothing "
+            "tells one body from another; record a motion of every joint, or give a model"
+        )
+
+
+def travels(points: Array) -> float:
+    """Return how far the markers travel, rms about each one's mean, (n_frames, n, 3) m → m."""
+    with np.errstate(invalid="ignore"):
+        off = points - np.nanmean(points, axis=0)
+    square = (off**2).sum(axis=2)
+    return float(np.sqrt(np.nanmean(square)))

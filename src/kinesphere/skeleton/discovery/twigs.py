@@ -1,0 +1,60 @@
+"""What was found beside a person's torso and is no limb: the torso's own."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from kinesphere.skeleton.discovery.chains import widest
+from kinesphere.skeleton.discovery.joint_markers import OWN_POSE
+from kinesphere.skeleton.discovery.names import Names, numbered
+from kinesphere.skeleton.discovery.partition import Partition, merged
+from kinesphere.skeleton.discovery.settings import DiscoverySettings
+from kinesphere.skeleton.settings import SkeletonSettings
+
+TORSO = ("pelvis", "trunk")
+"""What a person's tree hangs from, the first that is there."""
+
+
+def without_twigs(
+    partition: Partition,
+    tree: tuple[int, ...],
+    names: Names,
+    settings: DiscoverySettings,
+    limits: SkeletonSettings,
+) -> tuple[Partition, tuple[int, ...], Names]:
+    """Give a person's torso back what was found beside it: a shoulder blade's two markers.
+
+    A body that is no limb, has no pose of its own, and together with trunk or pelvis is not clearly
+    less steady than those are; arms that hung from it hang from there. Numbers of limbs without a
+    name close up.
+
+    Parameters
+    ----------
+    tree
+        The bodies of the tree that is named.
+    names
+        As they were found for it.
+
+    Returns
+    -------
+    Partition, tuple, Names
+        With the body left empty, and out of the tree.
+    """
+    wander, kept = partition.rigidity.wander, tree
+    for body in tree:
+        near = [b for b in partition.forest.neighbours(body) if names.limbs[b] in TORSO]
+        if (
+            not near
+            or len(partition.bodies[body]) >= OWN_POSE
+            or not names.limbs[body].startswith("limb_")
+        ):
+            continue
+        parent = near[0]
+        torso = partition.bodies[parent]
+        steady = max(partition.usual, widest(wander, torso))
+        both = np.concatenate([torso, partition.bodies[body]])
+        if widest(wander, both) <= settings.split_ratio * steady:
+            partition = merged(partition, parent, body, settings, limits)
+            kept = tuple(other for other in kept if other != body)
+    given = {b: names.limbs[b] for b in kept if not names.limbs[b].startswith("limb_")}
+    return partition, kept, replace(names, limbs=numbered(given, kept))

@@ -1,0 +1,89 @@
+"""Bodies, trees and names of real recordings whose labels were hidden."""
+
+from dataclasses import replace
+
+import pytest
+
+from kinesphere.io import read
+from kinesphere.labelling import built_in_model, match_labels
+from kinesphere.skeleton import discover
+
+pytestmark = pytest.mark.real
+
+GAIT = {"RPV": "pelvis", "RTA": "trunk"} | {
+    f"{letter}{code}": f"{side}_{limb}"
+    for letter, side in (("R", "right"), ("L", "left"))
+    for code, limb in (
+        *(("TH", "thigh"), ("SK", "shank"), ("FT", "foot"), ("AR", "upper_arm")),
+        ("FA", "forearm"),
+    )
+}
+PLATES = ("LB", "PV", "RUA", "LUA", "RFA", "LFA", "RTH", "LTH", "RSH", "LSH")
+
+
+def found_in(path):
+    """Return limb → set of hidden labels, and the discovery."""
+    recording = read(path)
+    hidden = replace(recording, labels=tuple(f"*{i}" for i in range(recording.n_markers)))
+    discovery = discover(hidden)
+    limbs = {
+        segment.name: {recording.labels[int(label[1:])] for label in segment.markers}
+        for segment in discovery.model.segments
+    }
+    return limbs, discovery
+
+
+def test_twelve_segments_of_a_walk_are_found_and_named(recordings):
+    limbs, discovery = found_in(recordings / "encodings" / "pc_real.c3d")
+    for name, labels in limbs.items():
+        assert {GAIT[label[:3]] for label in labels} == {name}
+        assert len(labels) == 3
+    assert len(limbs) == 12
+    names = {joint.name for joint in discovery.model.joints}
+    assert {"lumbar", "left_hip", "right_knee", "left_ankle", "right_elbow"} <= names
+
+
+def test_rigid_plates_are_bodies(recordings):
+    limbs, discovery = found_in(recordings / "plates" / "KneeltoProne01.c3d")
+    bodies = [frozenset(labels) for labels in limbs.values()]
+    recording = read(recordings / "plates" / "KneeltoProne01.c3d")
+    for plate in PLATES:
+        assert frozenset(x for x in recording.labels if x.startswith(plate)) in bodies
+    loose = {recording.labels[int(label[1:])] for label in discovery.step.findings["loose"]}
+    assert {"RAC", "LAC"} <= loose  # acromia wander by centimetres
+
+
+def test_an_unlabelled_arm_has_bodies_of_four_two_and_three(recordings):
+    limbs, discovery = found_in(recordings / "rigid-bodies" / "arm-4-2-3.c3d")
+    assert sorted(len(labels) for labels in limbs.values()) == [2, 3, 4]
+    assert len(discovery.model.joints) == 2
+    assert all(name.startswith("limb_") for name in limbs)
+
+
+def test_three_rigid_bodies_are_three(recordings):
+    limbs, _ = found_in(recordings / "rigid-bodies" / "walkingOptiTrack.c3d")
+    assert {frozenset(label[:4] for label in labels) for labels in limbs.values()} == {
+        frozenset({"Foot"}),
+        frozenset({"Knee"}),
+        frozenset({"Leg_"}),
+    }
+
+
+@pytest.mark.parametrize("trial", ["02_05", "06_01", "85_02", "135_02"])
+def test_sparse_markers_of_a_person_give_the_tree_and_no_wrong_name(recordings, trial):
+    model = built_in_model("cmu41")
+    recording = match_labels(read(recordings / "cmu41" / f"{trial}.c3d"), model)
+    own = {label: segment.name for segment in model.segments for label in segment.markers}
+    hidden = replace(recording, labels=tuple(f"*{i}" for i in range(recording.n_markers)))
+    found = discover(hidden)
+    named = 0
+    for segment in found.model.segments:
+        if segment.name.startswith("limb_"):
+            continue
+        limbs = [own[recording.labels[int(label[1:])]] for label in segment.markers]
+        assert max(set(limbs), key=limbs.count) == segment.name
+        named += 1
+    assert named >= 11
+    assert {"left_hip", "right_hip", "left_knee", "right_knee", "neck", "lumbar"} <= {
+        joint.name for joint in found.model.joints
+    }

@@ -1,0 +1,190 @@
+"""A model from motion alone, against the actor it came from and laws it must keep."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from kinesphere.data import Recording
+from kinesphere.errors import BadRecording, BadSetting, DegenerateMotion
+from kinesphere.skeleton import DiscoverySettings, discover
+from kinesphere.synthetic import (
+    HAND,
+    PLAYER,
+    QUADRUPED,
+    make_performance,
+    spoil_with_gaps,
+    spoil_with_ghosts,
+    spoil_with_noise,
+    spoil_with_soft_tissue,
+    together,
+)
+
+
+@pytest.fixture(scope="module")
+def found(recorded):
+    """Return what is found of the actor."""
+    return discover(recorded)
+
+
+def as_told(discovery):
+    """Return everything of a model but the names of its labels' columns."""
+    return (
+        {segment.name: set(segment.markers) for segment in discovery.model.segments},
+        {(joint.name, joint.parent, joint.child) for joint in discovery.model.joints},
+    )
+
+
+def truly_named(limbs):
+    return all(own == {name} for name, own in limbs.items())
+
+
+def test_every_limb_of_a_person_is_found_and_named(found, actor, owner, limbs_of):
+    assert truly_named(limbs_of(found, owner))
+    assert {segment.name for segment in found.model.segments} == set(owner)
+    edges = {(joint.name, joint.parent, joint.child) for joint in found.model.joints}
+    assert edges == {(joint.name, joint.parent, joint.child) for joint in actor.skeleton.joints}
+    assert found.model.root == "trunk"
+    assert found.step.warnings == ()
+
+
+def test_knees_are_hinges_and_hips_are_not(found):
+    axes = {joint.name: joint.n_axes for joint in found.model.joints}
+    assert axes["left_knee"] == axes["right_knee"] == 1
+    assert axes["left_hip"] == axes["right_hip"] == 2
+
+
+def test_turned_moved_and_reversed_it_is_the_same_person(found, recorded, rng):
+    turn = Rotation.random(rng=rng).as_matrix()
+    for markers in (recorded.markers @ turn.T + rng.normal(size=3), recorded.markers[::-1]):
+        assert as_told(discover(replace(recorded, markers=np.array(markers)))) == as_told(found)
+
+
+def test_order_of_markers_does_not_matter(found, recorded, rng):
+    order = rng.permutation(recorded.n_markers)
+    shuffled = replace(
+        recorded,
+        markers=np.ascontiguousarray(recorded.markers[:, order]),
+        labels=tuple(recorded.labels[i] for i in order),
+    )
+    assert as_told(discover(shuffled)) == as_told(found)
+
+
+def test_a_mirror_image_has_left_and_right_exchanged(recorded, owner, limbs_of):
+    seen = discover(replace(recorded, markers=recorded.markers * [-1.0, 1.0, 1.0]))
+    swapped = {"left": "right", "right": "left"}
+    for name, limbs in limbs_of(seen, owner).items():
+        side, _, kind = name.partition("_")
+        assert limbs == {f"{swapped[side]}_{kind}" if side in swapped else name}
+
+
+def test_a_child_is_named_as_an_adult_is(found, recorded):
+    small = discover(replace(recorded, markers=0.6 * recorded.markers))
+    assert as_told(small) == as_told(found)
+
+
+def test_gaps_ghosts_and_soft_tissue_leave_the_person(actor, owner, limbs_of):
+    rng = np.random.default_rng(11)
+    recording = spoil_with_soft_tissue(actor.recording, rng, actor)
+    recording = spoil_with_noise(recording, rng, deviation=0.001)
+    recording = spoil_with_gaps(recording, rng, share=0.1, gap_s=0.3)
+    recording = spoil_with_ghosts(recording, rng, n_ghosts=5)
+    n = recording.n_markers
+    seen = discover(replace(recording, labels=tuple(f"*{i}" for i in range(n))))
+    assert truly_named(limbs_of(seen, owner))
+    assert sorted(seen.step.findings["ghosts"]) == [f"*{i}" for i in range(n - 5, n)]
+
+
+def test_the_same_input_gives_the_same_output(found, recorded):
+    again = discover(recorded)
+    assert again.model == found.model or as_told(again) == as_told(found)
+    assert again.step.findings == found.step.findings
+
+
+@pytest.mark.parametrize(("plan", "noise"), [(QUADRUPED, 0.001), (HAND, 0.0001)])
+def test_what_is_no_person_is_numbered(plan, noise):
+    rng = np.random.default_rng(1)
+    performance = make_performance(rng, plan=plan, rate=25, calibration_s=90, free_s=30)
+    recording = spoil_with_noise(performance.recording, rng, deviation=noise)
+    owner = {label: limb.name for limb in performance.skeleton.limbs for label in limb.markers}
+    found = discover(recording)
+    names = [segment.name for segment in found.model.segments]
+    assert sorted(names) == [f"limb_{i:02d}" for i in range(1, len(plan.limbs) + 1)]
+    limbs = {
+        segment.name: {owner[label] for label in segment.markers}
+        for segment in found.model.segments
+    }
+    assert all(len(one) == 1 for one in limbs.values())
+    edges = {frozenset((*limbs[j.parent], *limbs[j.child])) for j in found.model.joints}
+    assert edges == {frozenset((j.parent, j.child)) for j in performance.skeleton.joints}
+    assert any("numbered" in warning for warning in found.step.warnings)
+
+
+def test_a_racket_is_no_hand():
+    rng = np.random.default_rng(3)
+    performance = make_performance(rng, plan=PLAYER, rate=25, calibration_s=60, free_s=20)
+    found = discover(spoil_with_noise(performance.recording, rng, deviation=0.001))
+    by_name = {segment.name: segment.markers for segment in found.model.segments}
+    assert set(by_name["limb_01"]) == set(performance.skeleton.limb("racket").markers)
+    assert set(by_name["right_forearm"]) == set(performance.skeleton.limb("right_forearm").markers)
+
+
+def test_of_two_people_either_is_solved_and_the_other_is_told():
+    people = {
+        name: make_performance(np.random.default_rng(k), rate=25, calibration_s=40, free_s=20)
+        for k, name in enumerate(("Anna", "Ben"))
+    }
+    recording = spoil_with_noise(together(people), np.random.default_rng(5), deviation=0.001)
+    whom = set()
+    for tree in (1, 2):
+        found = discover(recording, DiscoverySettings(tree=tree))
+        (other,) = found.step.findings["other_trees"]
+        assert {label[:3] for label in found.model.labels}.isdisjoint(label[:3] for label in other)
+        assert len(found.model.labels) + len(other) == recording.n_markers
+        assert any("move independently" in warning for warning in found.step.warnings)
+        whom |= {label[:3] for label in found.model.labels}
+    assert whom == {"Ann", "Ben"}
+    with pytest.raises(BadRecording, match="tree 3 was asked for; 2"):
+        discover(recording, DiscoverySettings(tree=3))
+
+
+def test_the_number_of_bodies_and_the_names_can_be_settled(recorded):
+    found = discover(recorded, DiscoverySettings(bodies=9, names=False))
+    assert found.step.findings["bodies_found"] == 9
+    assert all(segment.name.startswith("limb_") for segment in found.model.segments)
+    with pytest.raises(BadSetting, match="bodies is 0"):
+        DiscoverySettings(bodies=0)
+
+
+def test_a_single_rigid_thing_is_one_limb(rng):
+    steps = np.cumsum(rng.normal(scale=0.03, size=(2, 300, 3)), axis=1)
+    turns = Rotation.from_rotvec(steps[0]).as_matrix()
+    points = np.einsum("fij,mj->fmi", turns, rng.normal(scale=0.1, size=(5, 3)))
+    points = points + steps[1][:, None] + rng.normal(scale=3e-4, size=points.shape)
+    found = discover(Recording(points, tuple("abcde"), 50.0))
+    assert len(found.model.segments) == 1
+    assert found.model.joints == ()
+
+
+def test_a_marker_never_seen_and_a_pair_in_one_place_are_survived(recorded, owner):
+    markers = np.array(recorded.markers)
+    markers[:, 3] = np.nan
+    markers[:, 6] = markers[:, 7]
+    found = discover(replace(recorded, markers=markers))
+    assert "*3" not in found.model.labels
+    home = next(s for s in found.model.segments if "*6" in s.markers)
+    assert "*7" in home.markers
+    assert len(found.model.segments) == len(set(owner))
+
+
+def test_two_markers_and_bodies_of_two_are_refused(recorded, rng):
+    with pytest.raises(BadRecording, match="at least 3 are needed"):
+        discover(replace(recorded, markers=recorded.markers[:, :2], labels=recorded.labels[:2]))
+    ends = np.cumsum(rng.normal(scale=0.05, size=(400, 4, 3)), axis=0)
+    stick = ends[:, 1] - ends[:, 0]
+    ends[:, 1] = ends[:, 0] + 0.2 * stick / np.linalg.norm(stick, axis=1, keepdims=True)
+    stick = ends[:, 3] - ends[:, 2]
+    ends[:, 3] = ends[:, 2] + 0.3 * stick / np.linalg.norm(stick, axis=1, keepdims=True)
+    with pytest.raises(DegenerateMotion, match="three markers that a root needs"):
+        discover(Recording(ends, tuple("abcd"), 50.0))

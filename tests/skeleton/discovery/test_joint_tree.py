@@ -1,0 +1,129 @@
+"""Trees of bodies: which edges, what their rivals are, what moves by itself, and the root."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from kinesphere.skeleton.discovery.joint_tree import (
+    Edge,
+    JointCosts,
+    contracted,
+    find_forest,
+    rerooted,
+    similar_forests,
+)
+
+
+@pytest.fixture(scope="module")
+def true_bodies(owner):
+    """Return the columns of every true limb."""
+    limbs = list(dict.fromkeys(owner))
+    return limbs, [np.flatnonzero(np.array(owner) == limb) for limb in limbs]
+
+
+@pytest.fixture(scope="module")
+def forest(recorded, true_bodies):
+    """Return the forest of the true bodies."""
+    return find_forest(JointCosts(recorded.markers[::3], 1.0), true_bodies[1])
+
+
+def edges_of(forest):
+    return {frozenset((edge.a, edge.b)) for edge in forest.edges}
+
+
+def test_the_tree_of_an_actor_is_found_from_its_bodies(actor, true_bodies, forest):
+    at = {limb: i for i, limb in enumerate(true_bodies[0])}
+    truth = {frozenset((at[j.parent], at[j.child])) for j in actor.skeleton.joints}
+    assert edges_of(forest) == truth
+    assert len(forest.trees) == 1
+    assert true_bodies[0][forest.trees[0][0]] == "trunk"
+
+
+def test_parents_come_before_children_and_only_roots_have_none(forest):
+    (tree,) = forest.trees
+    for body in tree[1:]:
+        assert tree.index(forest.parent(body)) < tree.index(body)
+        assert body in forest.children(forest.parent(body))
+    assert forest.parent(tree[0]) is None
+
+
+def test_a_rival_is_the_cheapest_other_way_to_hold_the_tree_together(forest):
+    for edge in forest.edges:
+        side = {edge.b}
+        while (
+            more := {
+                b
+                for other in forest.edges
+                if other is not edge and ({other.a, other.b} & side)
+                for b in (other.a, other.b)
+            }
+            - side
+        ):
+            side |= more
+        across = [
+            cost
+            for pair, cost in forest.costs.items()
+            if len(set(pair) & side) == 1 and set(pair) != {edge.a, edge.b}
+        ]
+        assert edge.next_best == min(across)
+        assert edge.next_best >= edge.cost
+
+
+def test_confidence_goes_from_a_tie_to_certainty():
+    assert Edge(0, 1, 0.01, 0.01).confidence == 0
+    assert Edge(0, 1, 0.01, 0.04).confidence == pytest.approx(0.75)
+    assert Edge(0, 1, 0.01, np.inf).confidence == 1
+    assert Edge(0, 1, 0.02, 0.01).confidence == 0
+
+
+def test_what_moves_by_itself_is_a_tree_of_its_own(
+    recorded, owner, true_bodies, rng, moving_bodies
+):
+    stranger, _ = moving_bodies(rng, (4,), n_frames=recorded.n_frames)
+    away = stranger + np.array([2.0, 0.0, 0.0])
+    points = np.concatenate([recorded.markers, away], axis=1)
+    bodies = [*true_bodies[1], np.arange(len(owner), len(owner) + 4)]
+    forest = find_forest(JointCosts(points[::3], 1.0), bodies)
+    assert [len(tree) for tree in forest.trees] == [len(true_bodies[1]), 1]
+    assert forest.trees[1] == (len(bodies) - 1,)
+
+
+def test_another_root_turns_edges_and_nothing_else(forest):
+    foot = forest.trees[0][-1]
+    turned = rerooted(forest, foot)
+    assert turned.trees[0][0] == foot
+    assert turned.parent(foot) is None
+    assert edges_of(turned) == edges_of(forest)
+    for body in turned.trees[0][1:]:
+        assert turned.trees[0].index(turned.parent(body)) < turned.trees[0].index(body)
+
+
+def test_similar_forests_swap_doubtful_edges_only_and_stay_trees(forest):
+    found = list(similar_forests(forest, 0))
+    assert found[0] == (forest, 0.0)
+    own = edges_of(forest)
+    doubtful = {frozenset((e.a, e.b)) for e in forest.edges if e.confidence < 0.3}
+    for other, unlikely in found[1:]:
+        assert 1 <= len(own - edges_of(other)) <= 2
+        assert own - edges_of(other) <= doubtful
+        assert len(other.trees) == 1
+        assert unlikely > 0
+
+
+def test_two_bodies_made_one_leave_the_rest_of_the_tree(forest):
+    edge = forest.edges[-1]
+    one = contracted(forest, edge.a, edge.b, forest.sizes)
+    assert edge.b not in one.trees[0]
+    assert len(one.trees[0]) == len(forest.trees[0]) - 1
+    assert len(one.edges) == len(forest.edges) - 1
+    for body in one.trees[0][1:]:
+        parent = forest.parent(body)
+        assert one.parent(body) == (edge.a if parent == edge.b else parent)
+
+
+def test_costs_do_not_depend_on_who_is_asked_first(recorded, true_bodies):
+    points = recorded.markers[::3]
+    one, other = JointCosts(points, 1.0), JointCosts(points, 1.0)
+    for a, b in pairwise(true_bodies[1]):
+        assert one.between(a, b) == pytest.approx(other.between(b, a), rel=0.05)

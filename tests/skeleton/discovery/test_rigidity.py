@@ -1,0 +1,61 @@
+"""Which markers count, and what is refused because nothing can be told from it."""
+
+import numpy as np
+import pytest
+
+from kinesphere.errors import BadRecording, DegenerateMotion
+from kinesphere.skeleton.discovery.rigidity import longest_runs, measure_rigidity, worth_grouping
+
+RATE = 50.0
+
+
+def test_reflections_are_told_from_markers_by_how_long_they_stay():
+    seen = np.ones((500, 5), dtype=bool)
+    seen[::4, 0] = False  # gaps everywhere, never half a second at a stretch
+    seen[:, 1] = False
+    seen[100:115, 1] = True  # a reflection of 0.3 s
+    seen[:, 2] = False  # never seen
+    seen[50:90, 3] = False  # an honest gap
+    assert worth_grouping(seen, RATE, 0.5).tolist() == [False, False, False, True, True]
+    assert worth_grouping(seen, RATE, 0.0).tolist() == [True, False, False, True, True]
+
+
+def test_a_recording_shorter_than_two_ghosts_keeps_its_markers():
+    assert worth_grouping(np.ones((12, 4), dtype=bool), RATE, 0.5).all()
+
+
+def test_longest_runs_count_the_ends():
+    seen = np.array([[1, 0, 1], [1, 0, 0], [0, 0, 1], [1, 0, 1]], dtype=bool)
+    assert longest_runs(seen).tolist() == [2, 0, 2]
+
+
+def test_noise_is_what_steady_distances_wander_by(rng, moving_bodies):
+    points, _ = moving_bodies(rng, (4, 3, 5), noise=0.001)
+    rigidity = measure_rigidity(points)
+    assert rigidity.noise == pytest.approx(0.001, rel=0.2)  # √2 σ of two ends, 0.79 for trimming
+    assert not rigidity.is_one_body
+
+
+def test_who_stands_still_is_told_to_move(rng):
+    points = rng.normal(size=(1, 9, 3)) + rng.normal(scale=3e-4, size=(80, 9, 3))
+    with pytest.raises(DegenerateMotion, match="hardly move relative to each other"):
+        measure_rigidity(points)
+
+
+def test_one_rigid_thing_on_its_way_is_one_body(rng, moving_bodies):
+    points, _ = moving_bodies(rng, (6,), noise=3e-4)
+    assert measure_rigidity(points).is_one_body
+
+
+@pytest.mark.parametrize("shape", [(200, 2), (9, 12)])
+def test_too_little_is_refused(rng, shape):
+    with pytest.raises(BadRecording, match=r"at least 3 markers in 10 frames"):
+        measure_rigidity(rng.normal(size=(*shape, 3)))
+
+
+def test_markers_never_seen_together_are_refused(rng):
+    points = np.full((90, 3, 3), np.nan)
+    for m in range(3):
+        points[30 * m : 30 * m + 30, m] = rng.normal(size=(30, 3))
+    with pytest.raises(BadRecording, match="no two markers"):
+        measure_rigidity(points)
