@@ -194,6 +194,18 @@ def test_solve_says_how_good_each_stage_is(solved):
 
 
 @pytest.mark.slow
+def test_solve_from_motion_alone(call, trc, tmp_path):
+    folder = tmp_path / "alone"
+    out = ok(call("solve", trc, "-o", folder, "--model", "none"))
+    for words in ("model motion alone", "bodies from motion alone", "Report:"):
+        assert words in out
+    assert 'id="bodies"' in (folder / "report.html").read_text(encoding="utf-8")
+    summary = json.loads((folder / "summary.json").read_text())
+    (step,) = [stage for stage in summary["stages"] if stage["name"] == "discovery"]
+    assert step["seconds"] > 0
+
+
+@pytest.mark.slow
 def test_solve_in_words_and_again_with_reused_axes(solved, call, trc, tmp_path):
     folder, _ = solved
     again = tmp_path / "again"

@@ -106,6 +106,7 @@ def test_words_that_cannot_be_meant(words, said, call):
     ("options", "said"),
     [
         (["--model", "cmu14"], ["cmu14", "built in are cmu41, plugin-gait"]),
+        (["--model", "none", "--set", "discovery.tree=9"], ["tree 9 was asked for"]),
         (["--subject", "Nobody"], ["Nobody"]),
         (["--calibration", "9"], ["START:END"]),
         (["--calibration", "5:2"], ["START:END"]),

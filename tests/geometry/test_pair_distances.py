@@ -5,7 +5,11 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
 
-from kinesphere.geometry.pair_distances import pair_distances
+from kinesphere.geometry.pair_distances import (
+    pair_distances,
+    pair_distances_by_columns,
+    pair_distances_kernel,
+)
 
 FRAMES, POINTS = 60, 7
 EXACT = 1e-12  # rounding on coordinates of about a metre
@@ -35,6 +39,18 @@ def test_every_pair_is_what_a_loop_makes_of_the_frames_that_show_both(rng, trim)
             assert found.std[i, j] == pytest.approx(std, abs=EXACT)
             assert found.trimmed_std[i, j] == pytest.approx(trimmed, abs=EXACT)
             assert found.frames[i, j] == count
+
+
+@pytest.mark.parametrize("measure", [pair_distances_kernel, pair_distances_by_columns])
+def test_either_way_of_measuring_gives_the_same(rng, measure):
+    points = walk(rng, gaps=0.3)
+    points[:, 5] = np.nan
+    found = np.full((3, POINTS, POINTS), np.nan)
+    count = np.zeros((POINTS, POINTS), dtype=np.int64)
+    by_point = np.ascontiguousarray(np.moveaxis(points, 1, 0))
+    measure(by_point, 0.05, *found, count)
+    for a, b in zip((*found, count), pair_distances(points), strict=True):
+        assert_allclose(a, b, atol=EXACT)
 
 
 def test_moving_the_scene_turning_time_and_naming_anew_change_nothing_else(rng):

@@ -157,6 +157,24 @@ def test_the_number_of_bodies_and_the_names_can_be_settled(recorded):
         DiscoverySettings(bodies=0)
 
 
+def test_cloth_is_told_as_loose_and_trusted_with_nothing(recorded, owner, rng):
+    trunk = owner.index("trunk")
+    flutter = np.cumsum(rng.normal(scale=0.02, size=(recorded.n_frames, 3)), axis=0)
+    flutter = 0.1 * flutter / flutter.std(axis=0)
+    cloth = recorded.markers[:, trunk] + np.array([0.0, -0.1, 0.15]) + flutter
+    found = discover(
+        replace(
+            recorded,
+            markers=np.concatenate([recorded.markers, cloth[:, None]], axis=1),
+            labels=(*recorded.labels, "cloth"),
+        )
+    )
+    assert found.step.findings["loose"] == ["cloth"]
+    assert found.step.findings["marker_confidence"]["cloth"] == 0
+    assert "cloth" not in found.model.labels
+    assert {segment.name for segment in found.model.segments} == set(owner)
+
+
 def test_a_single_rigid_thing_is_one_limb(rng):
     steps = np.cumsum(rng.normal(scale=0.03, size=(2, 300, 3)), axis=1)
     turns = Rotation.from_rotvec(steps[0]).as_matrix()
@@ -176,6 +194,15 @@ def test_a_marker_never_seen_and_a_pair_in_one_place_are_survived(recorded, owne
     home = next(s for s in found.model.segments if "*6" in s.markers)
     assert "*7" in home.markers
     assert len(found.model.segments) == len(set(owner))
+
+
+def test_bodies_never_seen_together_are_trees_of_their_own(rng, moving_bodies):
+    points, _ = moving_bodies(rng, (4, 5), n_frames=400, noise=0.0005)
+    points[:200, :4] = np.nan
+    points[200:, 4:] = np.nan
+    found = discover(Recording(points, tuple("abcdefghi"), 50.0))
+    assert found.step.findings["trees"] == 2
+    assert set(found.model.labels) == set("efghi")
 
 
 def test_two_markers_and_bodies_of_two_are_refused(recorded, rng):

@@ -89,6 +89,17 @@ def test_what_moves_by_itself_is_a_tree_of_its_own(
     assert forest.trees[1] == (len(bodies) - 1,)
 
 
+@pytest.mark.parametrize("sizes", [(4, 5), (4, 3, 5)])
+def test_bodies_that_have_nothing_to_do_with_each_other_are_as_many_trees(
+    rng, moving_bodies, sizes
+):
+    points, of = moving_bodies(rng, sizes, apart=1.0, noise=0.0005)
+    bodies = [np.flatnonzero(of == k) for k in range(len(sizes))]
+    forest = find_forest(JointCosts(points, 1.0), bodies)
+    assert len(forest.trees) == len(sizes)
+    assert forest.edges == ()
+
+
 def test_another_root_turns_edges_and_nothing_else(forest):
     foot = forest.trees[0][-1]
     turned = rerooted(forest, foot)
@@ -111,15 +122,24 @@ def test_similar_forests_swap_doubtful_edges_only_and_stay_trees(forest):
         assert unlikely > 0
 
 
+def test_swaps_that_would_make_a_ring_are_left_out(forest, monkeypatch):
+    monkeypatch.setattr("kinesphere.skeleton.discovery.joint_tree.SWAPPED", 0.99)
+    found = [other for other, _ in similar_forests(forest, 0)]
+    assert len(found) > 50
+    assert all(len(other.trees) == 1 for other in found)
+
+
 def test_two_bodies_made_one_leave_the_rest_of_the_tree(forest):
     edge = forest.edges[-1]
     one = contracted(forest, edge.a, edge.b, forest.sizes)
     assert edge.b not in one.trees[0]
+    assert len(one.trees) == 1
     assert len(one.trees[0]) == len(forest.trees[0]) - 1
-    assert len(one.edges) == len(forest.edges) - 1
-    for body in one.trees[0][1:]:
-        parent = forest.parent(body)
-        assert one.parent(body) == (edge.a if parent == edge.b else parent)
+    kept = {frozenset({edge.a if b == edge.b else b for b in pair}) for pair in edges_of(forest)}
+    assert edges_of(one) == {pair for pair in kept if len(pair) == 2}
+    for pair, cost in one.costs.items():
+        assert edge.b not in pair
+        assert cost <= forest.costs[pair]
 
 
 def test_costs_do_not_depend_on_who_is_asked_first(recorded, true_bodies):

@@ -17,7 +17,7 @@ APART = 0.06
 """m, least joint cost from which two bodies of a person's size may be no neighbours: on the
 recordings at hand joints cost up to 24 mm, bodies of different people a tenth of their way."""
 FAR_BEYOND = 3.0
-"""Times the median cost of the joints from which on one is none."""
+"""Times the median cost of the cheaper joints from which on one is none."""
 
 DOUBTFUL = 0.15
 """Confidence of an edge below which another one is called about as likely: 5 of 15 wrong joints of
@@ -128,9 +128,11 @@ def find_forest(costs: JointCosts, bodies: Sequence[Members]) -> Forest:
     names = tuple(str(i) for i in range(n))
     by_name = {(str(i), str(j)): cost for (i, j), cost in between.items()}
     chosen = [(int(a), int(b)) for a, b in spanning_tree(names, by_name)]
-    usual = float(np.median([between[pair] for pair in chosen])) if chosen else 0.0
-    limit = max(FAR_BEYOND * usual, APART * costs.share)
-    kept = [pair for pair in chosen if between[pair] <= limit]
+    kept: list[Pair] = []
+    for pair in chosen:  # cheapest first: each is judged by those before it
+        usual = float(np.median([between[other] for other in kept])) if kept else 0.0
+        if between[pair] <= max(FAR_BEYOND * usual, APART * costs.share):
+            kept.append(pair)
     return _forest(kept, between, tuple(len(members) for members in bodies))
 
 
@@ -267,15 +269,20 @@ def rerooted(forest: Forest, root: int) -> Forest:
 
 
 def contracted(forest: Forest, into: int, body: int, sizes: tuple[int, ...]) -> Forest:
-    """Return the forest with two bodies that meet made one; the second is in no tree any more."""
+    """Return the forest with two bodies that meet made one; the second is in no tree any more.
 
-    def renamed(other: int) -> int:
-        return into if other == body else other
+    What the second would have met for less, the first now does: rivals are found anew.
+    """
 
-    edges = tuple(
-        replace(edge, a=renamed(edge.a), b=renamed(edge.b))
-        for edge in forest.edges
-        if {edge.a, edge.b} != {into, body}
-    )
-    trees = tuple(tuple(dict.fromkeys(map(renamed, tree))) for tree in forest.trees)
-    return replace(forest, trees=trees, edges=edges, sizes=sizes)
+    def renamed(pair: Pair) -> Pair:
+        a, b = (into if other == body else other for other in pair)
+        return (min(a, b), max(a, b))
+
+    costs: dict[Pair, float] = {}
+    for pair, cost in forest.costs.items():
+        a, b = renamed(pair)
+        if a != b:
+            costs[a, b] = min(cost, costs.get((a, b), np.inf))
+    pairs = [renamed(_pair(edge)) for edge in forest.edges if {edge.a, edge.b} != {into, body}]
+    made = _forest(pairs, costs, sizes)
+    return replace(made, trees=tuple(tree for tree in made.trees if body not in tree))

@@ -46,7 +46,7 @@ class Rigidity:
     @property
     def is_one_body(self) -> bool:
         """Whether no distance wanders beyond what is steady: nothing here moves by itself."""
-        return self.most <= STILL * self.noise
+        return bool(np.isfinite(self.wander).all()) and self.most <= STILL * self.noise
 
     @property
     def most(self) -> float:
