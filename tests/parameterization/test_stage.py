@@ -76,7 +76,7 @@ def test_the_actors_axes_come_back(performance, solved):
         assert joint.n_axes == true.n_axes
         assert axis_errors(joint, true).max() < AXIS, joint.name
         assert ((joint.axes * true.axes).sum(axis=1) > 0).all(), joint.name  # order and sign
-        assert np.rad2deg(joint.axes_uncertainty.max()) < 1.5
+        assert max(findings(solved, joint.name)["halves_disagreement_deg"]) < 3.0
 
 
 def test_findings_are_in_the_order_of_the_axes(solved):
@@ -384,7 +384,7 @@ def test_axes_of_a_stranger_with_other_joints_are_no_help(performance):
     motion = only(performance.motion, ["trunk", "left_thigh"])
     stranger = only(performance.motion, ["trunk", "right_thigh"]).skeleton
     solved = parameterize(motion, reuse=stranger)
-    assert "no axes for left_hip" in solved.history[-1].warnings[-1]
+    assert "measured no axes of left_hip" in solved.history[-1].warnings[-1]
     assert solved.skeleton.joints[0].axes_source == "movement"
 
 

@@ -118,7 +118,7 @@ def test_axes_that_cannot_reach_where_the_limb_goes_are_doubted(recordings):
 
 
 def test_a_hinge_whose_other_half_says_otherwise_has_the_body_axis(recordings):
-    """A fidget of 12° in one half found a knee's axis 38° off; the other half moved 9° elsewhere."""
+    """A fidget of 12° put a knee's axis 38° off; the other half moved 9° about another one."""
     parameters = parameterize(motion_of(recordings / "functional" / "Test_func_rhip.c3d"))
     assert parameters.skeleton.joint("left_knee").axes_source == "body"
 
