@@ -43,7 +43,9 @@ def half_rows(motion: Motion, whole: Parameters) -> list[dict[str, Any]]:
         }
         row["enough"] = all(_enough(half, joint.name) for half in halves)
         if first.axes_source == last.axes_source == "movement":
-            a, b = np.asarray(first.axes), np.asarray(last.axes)
+            # a second axis that one half added to a hinge, distal, is no axis of the movement
+            count = min(first.n_axes, last.n_axes)
+            a, b = np.asarray(first.axes)[-count:], np.asarray(last.axes)[-count:]
             order = matched(b, a) if len(a) == 2 else list(range(len(a)))
             row["halves_deg"] = line_angles(a, b[order]).tolist()
         rows.append(row)

@@ -9,8 +9,8 @@ from kinesphere.parameterization.confidence import contradiction, early_share
 from kinesphere.parameterization.settings import AxesSettings
 
 
-def find(samples):
-    return find_axes(samples, 2, AxesSettings())
+def search(samples):
+    return samples, find_axes(samples, 2, AxesSettings())
 
 
 def alternating(rng, calibration, **changes):
@@ -22,28 +22,42 @@ def alternating(rng, calibration, **changes):
 
 def test_halves_of_one_joint_agree(rng, calibration):
     samples, halves = alternating(rng, calibration)
-    apart = contradiction(halves, find(samples), np.array([0.5, 0.5]), find)
+    apart, arcs = contradiction(halves, search(samples)[1], search)
     assert np.rad2deg(apart).max() < 1.0
+    assert (np.rad2deg(arcs) > 50.0).all()  # of twice 40° to 45°, the extremes left out
 
 
 def test_halves_of_two_joints_contradict_each_other(rng, calibration):
     samples, halves = alternating(rng, calibration)
     _, others = alternating(rng, calibration)
-    apart = contradiction([halves[0], others[1]], find(samples), np.array([0.5, 0.5]), find)
+    apart, _ = contradiction([halves[0], others[1]], search(samples)[1], search)
     assert np.rad2deg(apart).max() > 20.0
 
 
-def test_an_axis_of_one_half_alone_is_contradicted_by_nothing(rng, calibration):
+def test_the_smaller_arc_is_told(rng, calibration):
     samples, halves = alternating(rng, calibration)
-    apart = contradiction(halves, find(samples), np.array([0.5, 0.9]), find)
-    assert np.isfinite(apart[0])
-    assert np.isnan(apart[1])
+    _, small = alternating(rng, calibration, amplitudes=(10.0, 9.0))
+    _, arcs = contradiction([halves[0], small[1]], search(samples)[1], search)
+    assert (np.rad2deg(arcs) < 21.0).all()
 
 
 def test_a_half_without_movement_tells_nothing(rng, calibration):
     samples, halves = alternating(rng, calibration)
     still = halves[1].with_phases(())
-    assert np.isnan(contradiction([halves[0], still], find(samples), np.ones(2) / 2, find)).all()
+    apart, arcs = contradiction([halves[0], still], search(samples)[1], search)
+    assert np.isnan(apart).all()
+    assert_allclose(arcs, 0)
+
+
+def test_a_half_that_lacks_one_movement_tells_of_the_other(rng, calibration):
+    samples, halves = alternating(rng, calibration)
+    axes = search(samples)[1]
+    one = halves[1].with_phases(halves[1].phases[:2])  # about the first axis only
+    apart, arcs = contradiction([halves[0], one], axes, search)
+    told = np.isfinite(apart)
+    assert told.sum() == 1
+    assert np.rad2deg(apart[told]) < 1.0
+    assert_allclose(arcs[~told], 0)
 
 
 @pytest.mark.parametrize("cut", [0, 55, 10_000])

@@ -130,8 +130,8 @@ def _decide(
     if abs(score) < _LEAST:
         raise AmbiguousFacing(
             "nothing tells front from back: no limb is named left or right, and feet, flexed knees "
-            f"and elbows and the walk say {said or 'nothing'}; pass facing, e.g. '+x' for the "
-            "world direction the person faces while standing"
+            f"and elbows and the walk say {said or 'nothing'}; pass facing (--facing), e.g. '+x' "
+            "for the world direction the person faces while standing"
         )
     agreeing = [n for n, witness in witnesses.items() if witness.score * score > 0]
     return score < 0, ", ".join(agreeing)

@@ -12,8 +12,12 @@ from kinesphere.parameterization.settings import AxesSettings
 
 Finder = Callable[[JointSamples], Array]
 """Samples → (n_found, 3) axes: an axis method with its settings bound."""
+Searcher = Callable[[JointSamples], tuple[JointSamples, Array]]
+"""Samples → those with the phases that count, and (n_found, 3) axes from them."""
 
 LEAST_SHARE = 0.2  # of an axis' frames in each half of the recording, for the halves to be compared
+TISSUE = np.deg2rad(2.0)
+"""rad, by which skin turns a limb over a movement: knees whose axis is 1° off over 130° say so."""
 SHORTEST = 4  # frames of a phase that a cut may leave
 PERCENTILES = (5.0, 95.0)  # a range of motion leaves the extremes out
 
@@ -37,11 +41,12 @@ class AxesQuality:
 
     @property
     def uncertainty(self) -> Array:
-        """(n_axes,) rad, standard deviation of each axis as its halves suggest it.
+        """(n_axes,) rad, standard deviation of each axis.
 
-        Halves have twice the variance of the whole, their difference four times.
+        What halves suggest (they have twice the variance of the whole, their difference four
+        times), and what skin does to both halves alike: `TISSUE` over the arc.
         """
-        return self.halves / 2
+        return np.asarray(np.hypot(self.halves / 2, TISSUE / np.maximum(self.ranges, TISSUE)))
 
     def ordered(self, order: Sequence[int]) -> "AxesQuality":
         """Return the same for axes in another order."""
@@ -100,28 +105,46 @@ def _arcs(samples: JointSamples, axes: Array, labels: Labels) -> tuple[Array, Ar
 
 
 def contradiction(
-    halves: Iterable[JointSamples], axes: Array, shares: Array, find: Finder
-) -> Array:
-    """Return the angle between axes searched anew in each half of the time, (n_axes,) rad.
+    halves: Iterable[JointSamples], axes: Array, search: Searcher
+) -> tuple[Array, Array]:
+    """Return how far axes searched anew in each half of the time are apart, and the smaller arc.
 
-    As if each half were a recording of its own. NaN for an axis that moves almost in one half
-    alone: the other contradicts nothing.
+    As if each half were a recording of its own.
 
     Parameters
     ----------
     halves
         Two, with all their phases.
     axes : (n_axes, 3)
-    shares : (n_axes,)
-        How much of the movement about each axis lies in the first half.
-    find
-        Samples → axes.
+    search
+        Samples → those with the phases that count, and axes from them.
+
+    Returns
+    -------
+    apart : (n_axes,) rad
+        NaN where a half has no such axis.
+    arcs : (n_axes,) rad
+        How far the limb moves about each axis in the half where it moves less.
     """
-    told = [_matched(find(half) if half.phases else np.empty((0, 3)), axes) for half in halves]
-    cosines = np.abs((told[0] * told[1]).sum(axis=1))
-    sines = np.linalg.norm(np.cross(told[0], told[1]), axis=1)
-    shared = np.abs(shares - 0.5) <= 0.5 - LEAST_SHARE
-    return np.asarray(np.where(shared, np.arctan2(sines, cosines), np.nan))
+    told, arcs = [], []
+    for half in halves:
+        used, found = search(half) if half.phases else (half, np.empty((0, 3)))
+        found = _matched(found, axes)
+        known = np.isfinite(found[:, 0])
+        told.append(found)
+        arcs.append(np.zeros(len(axes)))
+        if known.any():
+            labels = np.array(
+                [phase_swing(used, p).about(found[known]).argmax() for p in used.phases]
+            )
+            arcs[-1][known] = _arcs(used, found[known], labels)[0]
+    return _between(told[0], told[1]), np.minimum(arcs[0], arcs[1])
+
+
+def _between(a: Array, b: Array) -> Array:
+    """Return the angle between lines, (n, 3) each, (n,) rad; NaN where one is not there."""
+    cosines = np.abs((a * b).sum(axis=1))
+    return np.asarray(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), cosines))
 
 
 def early_share(samples: JointSamples, labels: Labels, n_axes: int, cut: int) -> Array:
@@ -142,10 +165,8 @@ def halves_disagreement(samples: JointSamples, axes: Array, labels: Labels, find
     worst = np.full(len(axes), np.nan)
     for first, second in _splits(samples, labels, len(axes)):
         pairs = [_matched(find(samples.with_phases(half)), axes) for half in (first, second)]
-        cosines = np.abs((pairs[0] * pairs[1]).sum(axis=1))
-        sines = np.linalg.norm(np.cross(pairs[0], pairs[1]), axis=1)
-        apart = np.where(np.isnan(cosines), np.pi / 2, np.arctan2(sines, cosines))
-        worst = np.fmax(worst, apart)
+        # an axis that half of its own movement does not show is no axis: as far off as can be
+        worst = np.fmax(worst, np.nan_to_num(_between(*pairs), nan=np.pi / 2))
     return worst
 
 
@@ -173,7 +194,7 @@ def reasons_to_doubt(
         )
     if not np.isfinite(quality.halves).all():
         doubts.append("there is too little movement to compare two halves of it")
-    elif np.rad2deg(quality.uncertainty.max()) > s.largest_uncertainty:
+    elif np.rad2deg(quality.halves.max()) > 2 * s.largest_uncertainty:
         doubts.append(apart(quality.halves))
     if len(axes) > 1 and quality.explained < s.smallest_explained:
         doubts.append(

@@ -16,7 +16,7 @@ from kinesphere.parameterization.anatomy import (
 from kinesphere.parameterization.angles import JointAngles, solve_angles
 from kinesphere.parameterization.axes.fit import moving_positions
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
-from kinesphere.parameterization.confidence import AxesQuality, apart, observed_n_axes
+from kinesphere.parameterization.confidence import AxesQuality, observed_n_axes
 from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge
 from kinesphere.parameterization.movement_axes import movement_axes
 from kinesphere.parameterization.second_axis import cone_spread, second_axis
@@ -79,6 +79,9 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
     declared = declared_n_axes(view.name, parse_counts(options.counts))
     n_axes = declared or observed or 2
     keep = options.on_doubt == "movement"
+    if n_axes == 1 and options.method == "universal-joint":
+        options = replace(options, method="phase-log-pca")  # that method is for two axes
+        settings = replace(settings, axes=options)
 
     found = movement_axes(view, n_axes, settings)
     axes, quality, doubts = found.axes, found.quality, list(found.doubts)
@@ -96,8 +99,8 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
             share, _ = reach_and_twist(view, axes, rest, settings)
             if share > OUT_OF_REACH:
                 doubts.append(f"the limb is out of these axes' reach in {share:.0%} of the frames")
-        if not doubts and np.rad2deg(quality.halves.max()) > options.largest_disagreement:
-            loose = apart(quality.halves)
+        if not doubts:
+            loose = found.remark
     if free is None and (len(axes) < n_axes or (doubts and not keep)):
         source = "body"
         axes = substitute_axes(view.name, n_axes, view.gravity)[::-1]

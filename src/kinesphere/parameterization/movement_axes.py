@@ -11,9 +11,12 @@ from kinesphere.parameterization.axes import find_axes
 from kinesphere.parameterization.axes.fit import phase_labels
 from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.confidence import (
+    LEAST_SHARE,
     PERCENTILES,
     AxesQuality,
     Finder,
+    Searcher,
+    apart,
     assess_axes,
     contradiction,
     early_share,
@@ -29,6 +32,7 @@ from kinesphere.parameterization.settings import (
 )
 from kinesphere.parameterization.view import JointView, view_halves
 
+COMPARABLE = 0.5  # of the whole arc: a half that moves less far is no judge of the whole
 REPEATED = 2  # phases of each main movement: one alone contradicts nothing, where there are more
 
 
@@ -42,6 +46,8 @@ class MovementAxes:
     """None where nothing was found."""
     doubts: tuple[str, ...]
     """Why these axes should not serve, each a clause."""
+    remark: str = ""
+    """What a person should know of axes that serve: how far two halves contradict each other."""
 
     def doubtful(self, options: AxesSettings) -> bool:
         """Return whether anything speaks against these axes."""
@@ -74,22 +80,19 @@ def movement_axes(view: JointView, n_axes: int, settings: ParameterizationSettin
                 once = once or (samples, axes)
         return once or (samples, axes)
 
-    def anew(among: JointSamples) -> Array:
-        return search(among)[1]
-
     samples, axes = search(view.samples)
     if len(axes) == 0:
         unseen = not view.calibration.any()
         return MovementAxes(
             axes, None, ("it is never seen" if unseen else "the limb hardly moves",)
         )
-    judged = _judged(view, samples, axes, n_axes, find, anew, settings)
+    judged = _judged(view, samples, axes, n_axes, find, search, settings)
     long = long_phases(samples)
     if judged.doubtful(options) and not free and 0 < len(long) < len(samples.phases):
         calmer = samples.with_phases(long)
         again = find(calmer)
         if len(again) == n_axes:
-            second = _judged(view, calmer, again, n_axes, find, anew, settings)
+            second = _judged(view, calmer, again, n_axes, find, search, settings)
             if not second.doubtful(options):
                 return second
     return judged
@@ -101,7 +104,7 @@ def _judged(
     axes: Array,
     n_axes: int,
     find: Finder,
-    search: Finder,
+    search: Searcher,
     settings: ParameterizationSettings,
 ) -> MovementAxes:
     """Return how good axes from some phases are, and what speaks against them."""
@@ -118,13 +121,25 @@ def _judged(
     doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
     if nominal is not None and n_axes == 1 and worse_than_body(axes[0], nominal[0], positions):
         doubts.append("the body frame's axis suits all the movement clearly better")
+    remark = ""
     if not doubts:
-        shares = early_share(samples, quality.labels, n_axes, len(positions) // 2)
         halves = (half.samples for half in view_halves(view, settings))
-        apart = contradiction(halves, axes, shares, search)
-        quality = replace(quality, halves=np.fmax(quality.halves, apart))
+        off, arcs = contradiction(halves, axes, search)
+        shares = early_share(samples, quality.labels, n_axes, len(positions) // 2)
+        comparable = arcs >= COMPARABLE * quality.ranges
+        if n_axes > 1:  # main movements are made one after another: a half may lack one
+            comparable &= np.abs(shares - 0.5) <= 0.5 - LEAST_SHARE
+        halves_apart = np.fmax(quality.halves, np.where(comparable, off, np.nan))
+        quality = replace(quality, halves=halves_apart)
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
-    return MovementAxes(axes, quality, tuple(doubts))
+        said = np.where(arcs >= np.deg2rad(options.smallest_range), off, 0.0)
+        remark = _remark(np.fmax(halves_apart, said), options)
+    return MovementAxes(axes, quality, tuple(doubts), remark)
+
+
+def _remark(halves: Array, options: AxesSettings) -> str:
+    """Return how far halves contradict each other, a clause; empty where they hardly do."""
+    return apart(halves) if np.rad2deg(halves.max()) > options.largest_disagreement else ""
 
 
 def _in_free_motion(n_axes: int, options: AxesSettings) -> bool:

@@ -73,8 +73,8 @@ def stage_warnings(
         loose = [f"{name} ({fit.loose})" for name, fit in fits.items() if fit.loose]
         if loose:
             warnings.append(
-                "these axes are known to a few degrees only, yet the body frame's would be no "
-                f"better: {', '.join(loose)}"
+                "halves of their movement put these axes more than 10° apart, yet the body frame's "
+                f"would be no better: {', '.join(loose)}"
             )
     added = [f"{name} ({fit.added})" for name, fit in fits.items() if fit.added]
     if added:

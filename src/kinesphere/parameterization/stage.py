@@ -37,6 +37,7 @@ from kinesphere.parameterization.report import Told, result_findings, stage_warn
 from kinesphere.parameterization.settings import (
     AxesSettings,
     ParameterizationSettings,
+    parse_counts,
     parse_windows,
 )
 from kinesphere.parameterization.view import reliable_frames, view_joint
@@ -143,8 +144,15 @@ def parameterize(
     own = [name for name, fit in fits.items() if fit.source != "reused"]
     if reuse is not None and own:
         warnings += (
-            f"the solution to be reused has no axes for {', '.join(own)}; theirs are from here",
+            f"the solution to be reused measured no axes of {', '.join(own)}; theirs are from here",
         )
+    if (
+        reuse is not None
+        and len(own) < len(fits)
+        and (settings.axes.windows or settings.axes.counts)
+    ):
+        warnings += ("axes.windows and axes.counts say nothing about axes that are reused",)
+    warnings += _windows_beyond(motion, settings.axes)
     step = Step(
         "parameterization",
         {
@@ -178,9 +186,23 @@ def _windows(
     own = parse_windows(axes.windows)
     joints = motion.skeleton.joint_names
     kinds = {name: without_side(name) for name in joints}
-    if strange := [name for name in own if name not in {*joints, *kinds.values()}]:
-        raise BadSetting(f"windows names {', '.join(strange)}; the joints are {', '.join(joints)}")
+    for setting, names in (("windows", own), ("counts", parse_counts(axes.counts))):
+        if strange := [name for name in names if name not in {*joints, *kinds.values()}]:
+            raise BadSetting(
+                f"{setting} names {', '.join(strange)}; the joints are {', '.join(joints)}"
+            )
     return [_window(motion, own.get(name, own.get(kinds[name], calibration))) for name in joints]
+
+
+def _windows_beyond(motion: Motion, axes: AxesSettings) -> tuple[str, ...]:
+    """Return a warning for each joint whose own window reaches beyond the recording."""
+    length = motion.n_frames / motion.rate
+    return tuple(
+        f"the window of {name}, {start:g}:{end:g} s, reaches beyond the recording, which lasts "
+        f"{length:.2f} s; what there is of it was used"
+        for name, (start, end) in parse_windows(axes.windows).items()
+        if end > length
+    )
 
 
 def _window(motion: Motion, calibration: tuple[float, float] | None) -> Mask:
@@ -202,8 +224,8 @@ def _reused(name: str, reuse: Skeleton | None) -> JointFit | None:
     if reuse is None or name not in reuse.joint_names:
         return None
     joint = reuse.joint(name)
-    if joint.axes is None or joint.rest is None:
-        return None
+    if joint.axes is None or joint.rest is None or joint.axes_source == "body":
+        return None  # what was assumed there may be measured here
     unknown = np.full(joint.n_axes, np.nan)
     uncertainty = unknown if joint.axes_uncertainty is None else joint.axes_uncertainty
     findings: dict[str, Json] = {"n_axes": joint.n_axes, "axes_source": "reused"}

@@ -167,9 +167,8 @@ def likeliest_axis(
             rows[:n, 2] = -scales[0]
             rows[-1, 2], values[-1] = 1 / cone.deviation, (opening - cone.usual) / cone.deviation
         cost = errors.effective * float(np.log(spreads).sum()) + 0.5 * float(values[-1] ** 2)
-        normal = rows.T @ rows
-        normal[np.diag_indices(3)] *= 1 + TINY
-        step = -np.linalg.solve(normal, rows.T @ values)[:2]
+        # phases of a frame or two leave directions open: those stay as they are
+        step = -np.linalg.lstsq(rows.T @ rows, rows.T @ values, TINY)[0][:2]
         size = float(np.linalg.norm(step))
         if size > LARGEST_STEP:
             step *= LARGEST_STEP / size
