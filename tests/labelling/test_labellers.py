@@ -49,9 +49,7 @@ class TestEveryLabeller:
         # about the vertical: the similarity tree assumes that people stand
         turn = Rotation.from_rotvec([0, rng.uniform(0.1, 3), 0]).as_matrix()
         moved = 1000 * (recording.markers @ turn.T + rng.normal(size=3))
-        assert_array_equal(
-            labeller(recording.markers, model).labels, labeller(moved, model).labels
-        )
+        assert_array_equal(labeller(recording.markers, model).labels, labeller(moved, model).labels)
 
     def test_too_few_points_are_refused_with_the_reason(self, labeller, legs):
         model, recording = legs
@@ -113,6 +111,13 @@ class TestPairStatistics:
         match = match_pair_statistics(recording.markers[:1], model)
         assert (match.labels == -1).all()
         assert match.note == "one frame alone shows no motion to recognise markers by"
+
+    def test_who_stands_still_is_refused(self, legs):
+        model, recording = legs
+        still = np.repeat(recording.markers[:1], 50, axis=0)
+        match = match_pair_statistics(still, model)
+        assert (match.labels == -1).all()
+        assert match.note.startswith("nothing moves")
 
     def test_points_that_move_like_nobody_are_refused(self, legs, rng):
         model, recording = legs

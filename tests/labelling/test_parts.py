@@ -175,9 +175,7 @@ class TestLocalTree:
         signs = np.sign(np.linalg.det(shape[quads[:, 1:]] - shape[quads[:, :1]]))
         for side in (1, -1):
             found = shape_from_distances(distance, np.column_stack([quads, side * signs]))
-            assert_allclose(
-                np.linalg.norm(found[:, None] - found, axis=2), distance, atol=EXACT
-            )
+            assert_allclose(np.linalg.norm(found[:, None] - found, axis=2), distance, atol=EXACT)
             back = np.sign(np.linalg.det(found[quads[:, 1:]] - found[quads[:, :1]]))
             assert_array_equal(back, side * signs)
 
