@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numba
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
@@ -11,6 +12,10 @@ from kinesphere.errors import BadModel
 from kinesphere.labelling.huang_xia import match_huang_xia
 from kinesphere.labelling.pair_statistics import match_pair_statistics
 from kinesphere.labelling.stage import LABELLERS
+
+pytestmark = pytest.mark.skipif(
+    bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes"
+)
 
 SURE = 0.1  # as the stage asks for by default
 
