@@ -41,8 +41,8 @@ def _pairs(rows: Rows) -> str:
     return (
         "Frames in which every one of the 41 markers has its right label, as the paper counts; "
         "*markers* of 41. The similarity tree is given a real frame of the model's recording as "
-        "its pose. The paper's own figures are not reached by its method as published: its alignment "
-        "leaves a rotation free, and these people are not standing alike.\n\n"
+        "its pose. The paper's own figures are not reached by its method as published: its "
+        "alignment leaves a rotation free, and these people are not standing alike.\n\n"
         + _table(
             "| recording | model | frames | default | Huang & Xia | Li et al. | markers, default "
             "| markers, Huang & Xia |",
@@ -101,7 +101,7 @@ def _broken(rows: Rows) -> str:
     return (
         "2 mm noise, every trajectory cut into pieces of 0.2–3 s whose identities are dropped, at "
         "most 16 s of a recording, by the model of the three other people. Counted are samples of "
-        "markers.\n\n"
+        "markers. Rows that are not there have not been run: each takes a minute or two.\n\n"
         + _table(
             "| recording | ghosts | hidden | pieces | precision | recall | F1 |", lines, "lrrrrrr"
         )
