@@ -101,7 +101,7 @@ def _broken(rows: Rows) -> str:
     return (
         "2 mm noise, every trajectory cut into pieces of 0.2–3 s whose identities are dropped, at "
         "most 16 s of a recording, by the model of the three other people. Counted are samples of "
-        "markers. Rows that are not there have not been run: each takes a minute or two.\n\n"
+        "markers.\n\n"
         + _table(
             "| recording | ghosts | hidden | pieces | precision | recall | F1 |", lines, "lrrrrrr"
         )
