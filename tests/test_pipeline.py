@@ -243,7 +243,7 @@ def test_one_change_leaves_all_else_alone():
     [
         ({"axis": {"method": "pca"}}, r"no stage is called 'axis' \(did you mean axes\?\)"),
         ({"axes": {"metod": "pca"}}, r"no setting 'metod' \(did you mean method\?\); known are"),
-        ({"zzz": {}}, "no stage is called 'zzz'; known are discovery, orientation"),
+        ({"zzz": {}}, "no stage is called 'zzz'; known are discovery, labelling, orientation"),
         ({"axes": "pca"}, "axes is a stage"),
         ({"axes": {"restarts": "2.5"}}, "axes.restarts is '2.5'; it must be a whole number"),
         ({"axes": {"restarts": 0}}, "axes.restarts is 0; it must be at least 1"),

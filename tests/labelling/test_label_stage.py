@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numba
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
@@ -11,6 +12,10 @@ from kinesphere.errors import BadModel, BadRecording, BadSetting
 from kinesphere.io import read, write
 from kinesphere.labelling import LabellingSettings, built_in_model, label
 from kinesphere.report import labelling_html
+
+pytestmark = pytest.mark.skipif(
+    bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes"
+)
 
 
 def stripped(recording, rng, **changes):

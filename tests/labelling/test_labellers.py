@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numba
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
@@ -11,6 +12,10 @@ from kinesphere.errors import BadModel
 from kinesphere.labelling.huang_xia import match_huang_xia
 from kinesphere.labelling.pair_statistics import match_pair_statistics
 from kinesphere.labelling.stage import LABELLERS
+
+pytestmark = pytest.mark.skipif(
+    bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes"
+)
 
 SURE = 0.1  # as the stage asks for by default
 
@@ -111,6 +116,13 @@ class TestPairStatistics:
         match = match_pair_statistics(recording.markers[:1], model)
         assert (match.labels == -1).all()
         assert match.note == "one frame alone shows no motion to recognise markers by"
+
+    def test_who_stands_still_is_refused(self, legs):
+        model, recording = legs
+        still = np.repeat(recording.markers[:1], 50, axis=0)
+        match = match_pair_statistics(still, model)
+        assert (match.labels == -1).all()
+        assert match.note.startswith("nothing moves")
 
     def test_points_that_move_like_nobody_are_refused(self, legs, rng):
         model, recording = legs

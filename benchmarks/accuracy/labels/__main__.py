@@ -1,4 +1,4 @@
-"""``python -m benchmarks.accuracy.labels [PART…]``: run, print, write; all parts if none is named."""
+"""``python -m benchmarks.accuracy.labels [PART…]``: run, print, write; all parts by default."""
 
 import argparse
 import json

@@ -55,10 +55,7 @@ def halves() -> list[dict[str, Any]]:
         n = recording.n_frames // 2
         first = replace(recording, markers=recording.markers[:n], residuals=None, outputs=())
         first = replace(first, analog=None, events=())
-        if groups is None:
-            model = _one_segment(first, name)
-        else:
-            model = learn_model([first], name, groups)
+        model = _one_segment(first, name) if groups is None else learn_model([first], name, groups)
         second = replace(first, markers=recording.markers[n:])
         rows.append(_score(name, model, second, "second half by the first (one person)"))
     return rows
@@ -118,7 +115,7 @@ def two_people() -> list[dict[str, Any]]:
     a, b = cmu("02_05"), cmu("135_02")
     n = min(a.n_frames, b.n_frames)
     rng = np.random.default_rng(6)
-    together = np.concatenate([a.markers[:n], b.markers[:n] + [0.5, 0.0, 1.0]], axis=1)
+    together = np.concatenate([a.markers[:n], b.markers[:n] + np.array([0.5, 0.0, 1.0])], axis=1)
     points, order = shuffled(together, rng)
     raw = Recording(points, tuple(f"*{i}" for i in range(82)), a.rate)
     rows = []
@@ -146,7 +143,7 @@ def two_people() -> list[dict[str, Any]]:
 
 
 def refusals() -> list[dict[str, Any]]:
-    """What does not fit: the reason, or how much is labelled all the same."""
+    """Try what does not fit: the reason, or how much is labelled all the same."""
     body = cmu("06_01").markers
     squat = read(folder() / "formats" / "squat.c3d")
     static = read(folder() / "plugin-gait" / "PiG_Calibration-FlatFoot-Full.c3d")
@@ -154,8 +151,8 @@ def refusals() -> list[dict[str, Any]]:
         "three markers": (body[:, :3], ()),
         "one frame": (body[:1], ()),
         "standing still: one frame 200 times": (np.repeat(body[:1], 200, axis=0), ()),
-        "another layout (53 markers)": (squat.markers, ()),
-        "another layout, standing (38 markers)": (static.markers, ()),
+        "a similar layout of 53 markers, squatting": (squat.markers, ()),
+        "Plug-in-Gait, standing trial": (static.markers, ()),
         "random walks": (
             np.cumsum(np.random.default_rng(7).normal(scale=0.01, size=(600, 41, 3)), axis=0),
             (),

@@ -75,7 +75,7 @@ def label(
     if as_json:
         print_json(summary)
         return
-    show(summary, labelled)
+    show(summary)
     stdout().print(f"\nLabelled: {output}\nReport: {page}", soft_wrap=True)
 
 
@@ -90,7 +90,7 @@ def describe(recording: "Recording") -> dict[str, Any]:
     }
 
 
-def show(summary: dict[str, Any], recording: "Recording") -> None:
+def show(summary: dict[str, Any]) -> None:
     """Print what labelling found, for people."""
     from kinesphere.cli.console import print_table, print_title, print_warnings, stdout
 
@@ -101,8 +101,8 @@ def show(summary: dict[str, Any], recording: "Recording") -> None:
         print_warnings(console, summary["warnings"])
         return
     head = (
-        f"{summary['labels_given']} of {summary['labels_known']} labels of {summary['model']} given, "
-        f"{summary['points_left_unlabelled']} pieces left unlabelled"
+        f"{summary['labels_given']} of {summary['labels_known']} labels of {summary['model']} "
+        f"given, {summary['points_left_unlabelled']} pieces left unlabelled"
     )
     print_title(console, Path(summary["file"]).name, head)
     rows = []

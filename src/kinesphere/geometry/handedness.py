@@ -97,7 +97,7 @@ def volume(a: Array, b: Array, c: Array, d: Array) -> float:
     x1, y1, z1 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     x2, y2, z2 = c[0] - a[0], c[1] - a[1], c[2] - a[2]
     x3, y3, z3 = d[0] - a[0], d[1] - a[1], d[2] - a[2]
-    return x1 * (y2 * z3 - z2 * y3) - y1 * (x2 * z3 - z2 * x3) + z1 * (x2 * y3 - y2 * x3)
+    return float(x1 * (y2 * z3 - z2 * y3) - y1 * (x2 * z3 - z2 * x3) + z1 * (x2 * y3 - y2 * x3))
 
 
 @kernel

@@ -58,7 +58,7 @@ def match_huang_xia(points: Array, model: TopologicalModel) -> Match:
         return nothing(n_points, f"{n_points} points are fewer than the {len(parts)} segments")
     found = pair_distances(points[evenly_spread(len(points), FRAMES)])
     deviation = np.where(np.isfinite(found.std), found.std, np.nanmax(found.std, initial=0.0))
-    groups = _groups(deviation, model, parts)
+    groups = _groups(deviation, parts)
     labels = _articulated(points, found.mean, deviation, groups, model, parts, template)
     votes = np.zeros((n_points, template.n))
     for k, votes_of in labels.items():
@@ -66,9 +66,7 @@ def match_huang_xia(points: Array, model: TopologicalModel) -> Match:
     return from_votes(votes, model, template.labels)
 
 
-def _groups(
-    deviation: Array, model: TopologicalModel, parts: dict[str, _Part]
-) -> list[NDArray[np.intp]]:
+def _groups(deviation: Array, parts: dict[str, _Part]) -> list[NDArray[np.intp]]:
     """Return the rigid groups: two halves first, then as many in each as the model has segments."""
     halves = _clusters(deviation, 2)
     lower = [p for p in parts.values() if _is_lower(p.name)]

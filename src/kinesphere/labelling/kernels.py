@@ -26,7 +26,7 @@ have few of them do; both measure worse where markers are missing."""
 def _share(log_std: float) -> float:
     """Return what the mean of a distance with this logarithm of its deviation may be off by."""
     std = max(np.exp(log_std) - 0.01, 0.0)
-    return 0.6 * std * std
+    return float(0.6 * std * std)
 
 
 @kernel
@@ -57,20 +57,20 @@ def pair_costs(
     """
     n, m = mean.shape[0], expected.shape[0]
     for k in range(n):
-        for l in range(n):
-            if k == l or not weight[k, l] > 0:
+        for p in range(n):
+            if k == p or not weight[k, p] > 0:
                 continue
             for i in range(m):
                 for j in range(m):
                     mu = expected[i, j]
                     if i == j or not np.isfinite(mu):
                         continue
-                    v = expected_variance[i, j] + variance[k, l]
-                    x = (mean[k, l] - mu) ** 2 / (2 * v)
-                    y = (log_std[k, l] - expected_log[i, j]) ** 2 / (2 * log_variance[i, j])
+                    v = expected_variance[i, j] + variance[k, p]
+                    x = (mean[k, p] - mu) ** 2 / (2 * v)
+                    y = (log_std[k, p] - expected_log[i, j]) ** 2 / (2 * log_variance[i, j])
                     usual = expected_variance[i, j] + _share(expected_log[i, j])
                     cost = x / (1 + x / _SOFT) + y / (1 + y / _SOFT) + 0.5 * np.log(v / usual)
-                    costs[k, i, l, j] = weight[k, l] * (cost - outlier)
+                    costs[k, i, p, j] = weight[k, p] * (cost - outlier)
 
 
 @kernel
@@ -108,12 +108,12 @@ def linear_terms(labels: Indices, costs: Single) -> Array:
     """Return (n_points, n_labels): what each point would cost with each label beside the others."""
     n, m = costs.shape[0], costs.shape[1]
     terms = np.zeros((n, m))
-    for l in range(n):
-        j = labels[l]
+    for p in range(n):
+        j = labels[p]
         if j >= 0:
             for k in range(n):
                 for i in range(m):
-                    terms[k, i] += costs[k, i, l, j]
+                    terms[k, i] += costs[k, i, p, j]
     return terms
 
 
@@ -125,10 +125,10 @@ def pair_energy(labels: Indices, costs: Single) -> float:
     for k in range(n):
         i = labels[k]
         if i >= 0:
-            for l in range(k + 1, n):
-                j = labels[l]
+            for p in range(k + 1, n):
+                j = labels[p]
                 if j >= 0:
-                    total += costs[k, i, l, j]
+                    total += costs[k, i, p, j]
     return total
 
 

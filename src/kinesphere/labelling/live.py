@@ -14,14 +14,14 @@ from kinesphere.errors import BadRecording
 from kinesphere.kernels.jit import kernel
 from kinesphere.labelling.own_distances import OwnDistances, own_distances
 
-REACH = 0.02
+REACH = 0.04
 """m, farthest a point may lie from where its marker is expected, beside what acceleration adds."""
 ACCELERATION = 150.0
-"""m/s², of feet that strike and fists: from one step to the next a marker strays by it times dt²."""
+"""m/s², of feet that strike and fists: from step to step a marker strays by it times dt²."""
 FAR = 10.0
 """m, stands for never in the assignment."""
-SMOOTH = 0.5
-"""How much of a new velocity enters the one that is expected to last."""
+SMOOTH = 1.0
+"""How much of a new step enters the one that is expected next: at 120 Hz the last one is best."""
 BACK = 2.5
 """Mean square deviation of distances up to which a point is a marker that comes back."""
 
@@ -46,7 +46,7 @@ class LiveLabels:
     """
 
     def __init__(self, labelled: Array, labels: tuple[str, ...], rate: float) -> None:
-        seen = np.isfinite(labelled).all(axis=2)
+        seen = np.asarray(np.isfinite(labelled).all(axis=2))
         if seen.any(axis=0).sum() < 4:
             raise BadRecording(
                 f"{int(seen.any(axis=0).sum())} markers are seen in the stretch to lock on to; "

@@ -41,7 +41,7 @@ def aligned(points: Array, reference: Array, axis: Array | None = None) -> Array
     size = float(np.linalg.norm(own) * np.linalg.norm(wanted))
     if sine <= PARALLEL * size:
         if cosine >= 0:
-            return off
+            return np.asarray(off)
         across = axis if axis is not None else np.cross(own, np.eye(3)[np.abs(own).argmin()])
         sine = 0.0
     turn = Rotation.from_rotvec(

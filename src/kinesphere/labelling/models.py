@@ -34,7 +34,7 @@ from kinesphere.errors import BadModel
 
 _FOLDER = files("kinesphere.labelling") / "models"
 _STATISTICS = files("kinesphere.labelling") / "statistics"
-"""What labelling recognises a layout by; written by ``python -m benchmarks.built_in_statistics``."""
+"""What labelling recognises a layout by: ``python -m benchmarks.built_in_statistics`` writes it."""
 
 
 def built_in_models() -> tuple[str, ...]:

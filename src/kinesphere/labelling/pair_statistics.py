@@ -40,9 +40,12 @@ SPARE = 1.5
 """Most points looked at, as a multiple of the labels: the longest seen ones."""
 RESCALED = 0.01
 """Change of scale after a first labelling from which on costs are computed anew."""
-WORST_FIT = 0.25
-"""Nats a pair by which labels must fit better than nothing; other layouts reach 0.1, other people
-of the same layout have 0.8 and more."""
+WORST_FIT = 0.8
+"""Nats a pair by which labels must fit better than nothing; right labels of other people have 1.3
+and more, points that move at random reach 0.5."""
+STILL = 0.0005
+"""Median deviation of distances, in scales, below which nothing moves: 3 mm on a full layout.
+Standing quietly is less, any movement ten times as much."""
 LEAST_AGREEMENT = 0.3
 """Handedness that must agree: right labels have 0.6 and more, those of a mirrored body −0.6."""
 
@@ -91,7 +94,7 @@ def match_pair_statistics(
     """
     layout = _layout_of(model)
     n_points = points.shape[1]
-    seen = np.isfinite(points).all(axis=2)
+    seen = np.asarray(np.isfinite(points).all(axis=2))
     if seen.any(axis=1).sum() < 2:
         return nothing(n_points, "one frame alone shows no motion to recognise markers by")
     kept = np.flatnonzero(seen.sum(axis=0) >= 2)
@@ -102,6 +105,10 @@ def match_pair_statistics(
             n_points, f"{len(kept)} markers are seen; {LEAST_LABELS} at least can be told apart"
         )
     found = signature(points[:, kept])
+    if start is None and _is_still(found):
+        return nothing(
+            n_points, "nothing moves: markers are recognised by how they move with each other"
+        )
     if start is None:
         solved = _solve(found, layout)
     else:
@@ -148,6 +155,12 @@ def _layout_of(model: TopologicalModel) -> _Layout:
         twins(model, template.labels),
         np.array([into[label] for label in template.labels], dtype=np.int64),
     )
+
+
+def _is_still(found: Signature) -> bool:
+    pairs = found.std[np.triu_indices(found.n, 1)]
+    pairs = pairs[np.isfinite(pairs)]
+    return not len(pairs) or float(np.median(pairs)) < STILL * scale_of(found.mean)
 
 
 def _plausible(points: Array, seen: NDArray[np.bool_], n_labels: int) -> NDArray[np.intp]:

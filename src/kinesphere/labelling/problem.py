@@ -49,12 +49,12 @@ class Problem:
     @property
     def n_points(self) -> int:
         """Number of points."""
-        return self.costs.shape[0]
+        return int(self.costs.shape[0])
 
     @property
     def n_labels(self) -> int:
         """Number of labels."""
-        return self.costs.shape[1]
+        return int(self.costs.shape[1])
 
     @property
     def handed(self) -> tuple[NDArray[np.int64], Array, NDArray[np.int8]]:

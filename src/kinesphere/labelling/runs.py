@@ -62,7 +62,7 @@ def tracks_of(markers: Array, rate: float, *, keep_columns: bool) -> list[Track]
     keep_columns
         Whether a column is one marker throughout, gaps and all; else identity ends with a run.
     """
-    runs = runs_of(np.isfinite(markers).all(axis=2))
+    runs = runs_of(np.asarray(np.isfinite(markers).all(axis=2)))
     if keep_columns:
         by_column: dict[int, list[Run]] = {}
         for run in runs:

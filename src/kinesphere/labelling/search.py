@@ -85,7 +85,7 @@ def find_labels(
 def exchange_blocks(
     problem: Problem, labels: Labels, moves: Moves, *, nullable: bool
 ) -> tuple[Labels, float]:
-    """Return labels after exchanges of blocks, each followed by a descent, as long as that helps."""
+    """Return labels after exchanges of blocks, each followed by a descent, while that helps."""
     energy = problem.energy(labels)
     known = {labels.tobytes()}
     while True:

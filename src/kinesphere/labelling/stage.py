@@ -132,7 +132,7 @@ def _assembled(
     sure = _confidences(state, len(model.labels))
     confidence = np.full(len(labels), np.nan)
     confidence[: len(given)] = sure[given]
-    step = _step(recording, model, settings, seeds, state, sure)
+    step = _step(model, settings, seeds, state, sure)
     return replace(
         recording,
         markers=markers,
@@ -146,7 +146,7 @@ def _assembled(
 def _names(
     recording: Recording, model: TopologicalModel, tracks: list[Track], taken: set[str]
 ) -> list[str]:
-    """Return names for what has no label: a marker's own if it stands for no label, else ``*0``…"""
+    """Return names for what has no label: its own if that stands for none, else ``*0``, ``*1``."""
     known = spelled(parse_labels(recording.labels, model), model)
     claimed = {name.column for names in known.values() for name in names}
     used = set(taken) | set(recording.labels)
@@ -178,7 +178,6 @@ def _confidences(state: Labelled, n_labels: int) -> Array:
 
 
 def _step(
-    recording: Recording,
     model: TopologicalModel,
     settings: LabellingSettings,
     seeds: dict[str, int],

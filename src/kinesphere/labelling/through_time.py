@@ -7,6 +7,7 @@ and forwards in time. A track that stops fitting its label is cut.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -245,11 +246,11 @@ def _windows(
         step = max(1, n // 4)
         for start in range(0, n_frames - n + 1, step):
             share = (total[:, start + n] - total[:, start]) / n
-            columns = np.flatnonzero(share >= COVERED)
+            columns = np.flatnonzero(share >= COVERED).tolist()
             count = min(len(columns), n_labels)
             worth = count + LONGER * np.log2(n / rate)
             if len(columns) >= 4:
-                found.append((-worth, start, start + n, columns.tolist()))
+                found.append((-worth, start, start + n, columns))
     chosen: list[tuple[int, int, list[int]]] = []
     for _, start, end, columns in sorted(found):
         clash = sum(min(end, b) - max(start, a) > (end - start) // 2 for a, b, _ in chosen)
@@ -354,12 +355,12 @@ def _blocked(
     state: Labelled, k: int, frames: NDArray[np.intp], fixed: set[int]
 ) -> NDArray[np.bool_]:
     """Return which labels track k cannot have: something longer has them at the same time."""
-    blocked = np.isfinite(state.points[frames, :, 0]).any(axis=0)
+    blocked = np.array(np.isfinite(state.points[frames, :, 0]).any(axis=0))
     for label in np.flatnonzero(blocked):
         rivals = _overlapping(state, k, int(label))
         longer = [o in fixed or _length(state, o) >= _length(state, k) for o in rivals]
         blocked[label] = not rivals or any(longer)
-    return np.asarray(blocked)
+    return blocked
 
 
 def _cut_foreign(
@@ -377,7 +378,7 @@ def _cut_foreign(
         for run in track:
             edges = np.r_[np.arange(run.start, run.end, block), run.end]
             foreign = []
-            for a, b in zip(edges[:-1], edges[1:], strict=True):
+            for a, b in pairwise(edges):
                 frames = np.arange(a, b)
                 cost, _ = costs_of(markers[frames, run.column], frames, state.points, own)
                 others = np.delete(np.where(np.isnan(cost), np.inf, cost), label)

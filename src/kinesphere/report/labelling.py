@@ -1,6 +1,7 @@
 """One HTML page that shows which labels were given, how surely, and where to look."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -136,7 +137,7 @@ def _rows(recording: Recording, model: TopologicalModel) -> list[LabelRow]:
 def _cells(seen: np.ndarray) -> Markup:
     """Return where a label is seen over time as a strip."""
     edges = np.linspace(0, len(seen), min(COLUMNS, len(seen)) + 1).astype(int)
-    share = np.array([seen[a:b].mean() for a, b in zip(edges[:-1], edges[1:], strict=True)])
+    share = np.array([seen[a:b].mean() for a, b in pairwise(edges)])
     parts = [f'<rect x="{a}" y="0" width="{b - a}" height="8"/>' for a, b in runs(share >= 0.5)]
     return Markup(
         f'<svg class="strip" viewBox="0 0 {len(share)} 8" preserveAspectRatio="none" '

@@ -1,0 +1,94 @@
+"""``kinesphere label``, as a person runs it."""
+
+import json
+from dataclasses import replace
+
+import numba
+import numpy as np
+import pytest
+
+from kinesphere.cli.main import run
+from kinesphere.io import read, write, write_model
+from kinesphere.labelling import built_in_model
+from kinesphere.skeleton.statistics import marker_statistics
+from kinesphere.synthetic import make_performance
+
+pytestmark = pytest.mark.skipif(
+    bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes"
+)
+HEAD = ("LFHD", "RFHD", "LBHD", "RBHD", "C7", "T10", "CLAV", "STRN", "RBAC", "LSHO", "RSHO")
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    """Return a folder with a model and a recording of someone else without labels."""
+    folder = tmp_path_factory.mktemp("label")
+    plain = built_in_model("cmu41")
+    trunk = [s for s in plain.segments if s.name in ("trunk", "head")]
+    model = replace(
+        plain,
+        name="upper",
+        segments=tuple(trunk),
+        joints=tuple(replace(j, landmarks=()) for j in plain.joints if j.name == "neck"),
+        root="trunk",
+        required=HEAD,
+        mirror=tuple(p for p in plain.mirror if set(p) <= set(HEAD)),
+        aliases={},
+        statistics=(),
+    )
+    made = [
+        make_performance(
+            np.random.default_rng(seed), layout="cmu41", calibration_s=10.0, free_s=10.0
+        ).recording
+        for seed in (21, 22)
+    ]
+    own = tuple(marker_statistics(one, model.labels, "someone") for one in made[:1])
+    write_model(replace(model, statistics=own), folder / "upper.json")
+    order = np.random.default_rng(3).permutation(len(model.labels))
+    columns = made[1].columns(tuple(model.labels[i] for i in order))
+    raw = replace(
+        made[1], markers=made[1].markers[:, columns], labels=tuple(f"*{i}" for i in order)
+    )
+    write(raw, folder / "raw.c3d")
+    return folder
+
+
+def test_a_labelled_file_a_table_and_a_page(files, capsys):
+    out = files / "out.c3d"
+    code = run(
+        ["label", str(files / "raw.c3d"), "--model", str(files / "upper.json"), "-o", str(out)]
+    )
+    said = capsys.readouterr().out
+    assert code == 0
+    assert "labels of upper given" in said
+    found = read(out)
+    assert set(found.labels) <= {*HEAD, *(f"*{i}" for i in range(99))}
+    page = (files / "out.html").read_text(encoding="utf-8")
+    for name in HEAD:
+        assert name in said
+        assert name in page
+
+
+def test_machines_get_json(files, capsys):
+    out = files / "again.c3d"
+    raw, model = str(files / "raw.c3d"), str(files / "upper.json")
+    assert run(["label", raw, "--model", model, "-o", str(out), "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["labels_known"] == len(HEAD)
+    assert set(summary["labels"]) == set(HEAD)
+
+
+@pytest.mark.parametrize(
+    ("extra", "said"),
+    [
+        (["--model", "nobody", "-o", "x.c3d"], "neither a file nor a built-in model"),
+        (["--model", "cmu41", "-o", "x.bvh"], "labels go to .c3d"),
+        (["--model", "cmu41", "-o", "x.c3d", "--set", "labelling.method=guess"], "known are pair"),
+    ],
+)
+def test_what_cannot_be_meant_is_said_in_a_line(files, capsys, monkeypatch, extra, said):
+    monkeypatch.chdir(files)
+    assert run(["label", "raw.c3d", *extra]) == 2
+    error = capsys.readouterr().err
+    assert said in error.replace("\n", " ")
+    assert not (files / "x.c3d").exists()
