@@ -167,6 +167,7 @@ def test_poses_are_of_joints_that_the_actor_has(rng):
     assert all(set(pose) <= names for pose in POSES)
 
 
+@pytest.mark.slow
 def test_every_estimator_answers():
     errors = run("90°", "clean", 1000)
     assert errors["as delivered"] == pytest.approx(errors["phase-log-pca"], abs=0.3)

@@ -154,6 +154,7 @@ def test_as_many_axes_as_there_are_movements(rng, calibration, n_axes):
     assert np.abs(joint.axes @ axes.T).max(axis=1).max() > 0.999
 
 
+@pytest.mark.slow
 def test_free_motion_needs_the_universal_joint(rng, calibration):
     joint = calibration(rng)
     t = np.arange(1200) / 50
