@@ -7,6 +7,7 @@ from benchmarks.axes.measures import line_angles
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+from kinesphere.geometry.rotations import rotation_angle
 from kinesphere.parameterization.axes import find_axes
 from kinesphere.parameterization.axes.free_motion import (
     MOST_FRAMES,
@@ -116,3 +117,17 @@ def test_long_motion_is_thinned(rng):
     assert MOST_FRAMES / 2 < len(thinned.times) <= MOST_FRAMES
     assert len(np.unique(np.floor(thinned.times / SPACING))) == len(thinned.times)
     assert_allclose(motion.first(7).times, times[:7])
+
+
+def test_restless_errors_are_averaged_and_steady_motion_is_not(rng):
+    joint = make_free_motion(rng, CONES["90°"], NOISES["iid 3°"], seconds=10.0)
+    times = np.arange(len(joint.rotations)) / RATE
+    restless = FreeMotion(joint.rotations, times, joint.long_axis, joint.rest)
+    clean = FreeMotion(joint.clean.rotations, times, joint.long_axis, joint.rest)
+    assert_allclose(clean.thinned().rotations, clean.rotations[::5])
+    thinned = restless.thinned()
+    middle = clean.rotations[2::5]  # of five frames at 50 Hz
+    errors = rotation_angle(np.swapaxes(middle, -1, -2) @ thinned.rotations)
+    alone = rotation_angle(np.swapaxes(middle, -1, -2) @ restless.rotations[2::5])
+    assert np.sqrt((errors**2).mean()) < 0.6 * np.sqrt((alone**2).mean())  # 1/√5, and the motion
+    assert_allclose(thinned.times, times[2::5])

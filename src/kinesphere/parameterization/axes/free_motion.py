@@ -9,16 +9,17 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from kinesphere.data import Array
-from kinesphere.geometry.rotations import rotation_about, tangent_basis
+from kinesphere.geometry.rotations import nearest_rotation, rotation_about, tangent_basis
 from kinesphere.parameterization.axes.kernels import surprise
 from kinesphere.parameterization.kernels import two_axis_solutions
 
 SPACING = 0.1  # s between frames; people's angles hardly change their course within that
+RESTLESS = np.deg2rad(0.7)  # errors new in every frame; correlated ones of 3° look like 0.5°
 MOST_FRAMES = 1200  # of longer motion, every second, third… frame
 USUAL = np.log([0.3, 0.3, 0.1, 0.5, 0.5, 0.5, 0.02, 0.4])
 """Deviations of both angles and the twist (rad) and their memories (s), error of a pose (rad) and
 its memory (s): 17°, 17°, 6°, half a second, 1°, 0.4 s."""
-FACTORS = np.array([1.0, 1.0, 1.0, 0.7, 0.7, 0.7, 0.7, 0.5])
+FACTORS = np.array([1.0, 1.0, 1.0, 0.7, 0.7, 0.7, 0.7, 1.0])
 """Standard deviations of these logarithms: half or double is nothing unusual."""
 WIDEST = 3.0  # of those deviations
 FLOOR = 0.002  # rad, of an angle without any error
@@ -44,10 +45,20 @@ class FreeMotion:
     """(3, 3) ``parent_from_child`` where the distal axis is told."""
 
     def thinned(self) -> "FreeMotion":
-        """Return frames at least `SPACING` apart, at most `MOST_FRAMES` of them."""
+        """Return frames at least `SPACING` apart, at most `MOST_FRAMES` of them.
+
+        Where errors are new in every frame, no process can follow them: there a frame stands for
+        the mean of its `SPACING`.
+        """
         cells = np.floor(self.times / SPACING + 1e-6)
         at = np.flatnonzero(np.diff(cells, prepend=-np.inf) > 0)
-        return self._at(at[:: 1 + (len(at) - 1) // MOST_FRAMES])
+        stride = slice(None, None, 1 + (len(at) - 1) // MOST_FRAMES)
+        if _new_in_every_frame(self.rotations) < RESTLESS:
+            return self._at(at[stride])
+        means = nearest_rotation(np.add.reduceat(self.rotations, at))
+        times = np.add.reduceat(self.times, at) / np.diff(at, append=len(cells))
+        few = replace(self, rotations=means, times=times)
+        return few._at(np.arange(len(at))[stride])
 
     def first(self, count: int) -> "FreeMotion":
         """Return the first few frames."""
@@ -144,3 +155,12 @@ def _angles(motion: FreeMotion, axes: Array) -> tuple[Array, Array]:
         motion.rotations, axes[0], axes[1], motion.reference, motion.long_axis
     )
     return np.unwrap(solutions[:, 0], axis=0), excess
+
+
+def _new_in_every_frame(rotations: Array) -> float:
+    """Return the standard deviation in rad, about each axis, of errors that no frame shares."""
+    if len(rotations) < 3:
+        return 0.0
+    bends = rotations[2:] + rotations[:-2] - 2 * rotations[1:-1]
+    # of independent errors the squares of the nine entries add up to 36 variances
+    return float(np.median(np.sqrt((bends**2).sum(axis=(1, 2))))) / 6
