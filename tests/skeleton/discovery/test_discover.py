@@ -175,6 +175,13 @@ def test_cloth_is_told_as_loose_and_trusted_with_nothing(recorded, owner, rng):
     assert {segment.name for segment in found.model.segments} == set(owner)
 
 
+@pytest.mark.parametrize("size", [3, 4, 5, 8])
+def test_a_single_thing_without_any_noise_is_one_limb(rng, moving_bodies, size):
+    points, _ = moving_bodies(rng, (size,))
+    found = discover(Recording(points, tuple("abcdefgh"[:size]), 100.0))
+    assert [len(segment.markers) for segment in found.model.segments] == [size]
+
+
 def test_a_single_rigid_thing_is_one_limb(rng):
     steps = np.cumsum(rng.normal(scale=0.03, size=(2, 300, 3)), axis=1)
     turns = Rotation.from_rotvec(steps[0]).as_matrix()

@@ -47,6 +47,30 @@ def test_one_rigid_thing_on_its_way_is_one_body(rng, moving_bodies):
     assert measure_rigidity(points).is_one_body
 
 
+@pytest.mark.parametrize("size", [3, 4, 5, 8])
+def test_a_thing_rigid_to_the_last_bit_is_one_body(rng, moving_bodies, size):
+    points, _ = moving_bodies(rng, (size,))
+    assert measure_rigidity(points).is_one_body
+    assert measure_rigidity(points.astype(np.float32).astype(float) + 40.0).is_one_body
+
+
+def test_what_cannot_be_resolved_is_no_wander(rng, moving_bodies):
+    points, of = moving_bodies(rng, (4, 3))
+    rigidity = measure_rigidity(points)
+    within = (of[:, None] == of) & ~np.eye(7, dtype=bool)
+    assert np.ptp(rigidity.wander[within]) < 1e-9  # no pattern of rounding errors
+    assert 1e-6 < rigidity.noise < 3e-5  # m, of bodies half a metre apart
+    assert not rigidity.is_one_body
+
+
+def test_frames_that_are_all_the_same_hold_no_motion(rng):
+    points = np.repeat(rng.normal(size=(1, 20, 3)), 500, axis=0)
+    points[:250, 3] = np.nan
+    points[250:, 4] = np.nan  # never seen with the other
+    with pytest.raises(DegenerateMotion, match="nothing tells one body from another"):
+        measure_rigidity(points)
+
+
 @pytest.mark.parametrize("shape", [(200, 2), (9, 12)])
 def test_too_little_is_refused(rng, shape):
     with pytest.raises(BadRecording, match=r"at least 3 markers in 10 frames"):
