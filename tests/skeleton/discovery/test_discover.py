@@ -96,6 +96,21 @@ def test_gaps_ghosts_and_soft_tissue_leave_the_person(actor, owner, limbs_of):
     assert sorted(seen.step.findings["ghosts"]) == [f"*{i}" for i in range(n - 5, n)]
 
 
+def test_samples_missing_at_random_leave_the_person(found, recorded, rng):
+    markers = recorded.markers.copy()
+    markers[rng.random(markers.shape[:2]) < 0.3] = np.nan
+    assert as_told(discover(replace(recorded, markers=markers))) == as_told(found)
+
+
+def test_where_all_counts_as_reflections_the_setting_is_named(recorded):
+    seen_at_times = recorded.markers.copy()
+    seen_at_times[np.arange(recorded.n_frames) % 20 > 4] = np.nan  # 0.2 s of each 0.8 s
+    for turn in (1, 2):  # a third of the markers at a time
+        seen_at_times[:, turn::3] = np.roll(seen_at_times[:, turn::3], 5 * turn, axis=0)
+    with pytest.raises(BadRecording, match=r"0 of .*0\.5 s .*discovery\.ghost_s"):
+        discover(replace(recorded, markers=seen_at_times))
+
+
 def test_the_same_input_gives_the_same_output(found, recorded):
     again = discover(recorded)
     assert again.model == found.model or as_told(again) == as_told(found)

@@ -91,7 +91,8 @@ def discover(
     if len(columns) < 3:
         raise BadRecording(
             f"{len(columns)} of {recording.n_markers} markers are seen for long enough to be "
-            "grouped into bodies; at least 3 are needed"
+            "grouped into bodies; at least 3 are needed. What is never around for "
+            f"{settings.ghost_s:g} s counts as a reflection (discovery.ghost_s)"
         )
     frames = spread_frames(recording.markers, settings.sample_frames, columns.tolist())
     points = np.ascontiguousarray(recording.markers[frames][:, columns])
