@@ -8,14 +8,11 @@ from kinesphere.data import Array, Json, TopologicalModel
 from kinesphere.skeleton.discovery.clustering import merge_curve
 from kinesphere.skeleton.discovery.joint_markers import owners
 from kinesphere.skeleton.discovery.joint_tree import DOUBTFUL, Edge
-from kinesphere.skeleton.discovery.names import Names
+from kinesphere.skeleton.discovery.names import DOUBTFUL_COUNT, Names
 from kinesphere.skeleton.discovery.partition import Partition
 
 CURVE = 30
 """Most bodies in the merge curve."""
-DOUBTFUL_COUNT = 0.3
-"""Confidence below which another number of bodies would do about as well: it is above .7 on
-synthetic bodies and rigid plates, .27 to .73 on sparse markers of a person."""
 DOUBTFUL_MARKER = 0.5
 """Confidence below which a marker is steadier in the next body than in its own."""
 

@@ -27,7 +27,7 @@ from kinesphere.skeleton.discovery.joint_tree import (
     rerooted,
     similar_forests,
 )
-from kinesphere.skeleton.discovery.names import Names, find_names, no_names
+from kinesphere.skeleton.discovery.names import Names, find_names, no_names, shaken
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
 from kinesphere.skeleton.discovery.rigidity import worth_grouping
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
@@ -108,6 +108,8 @@ def discover(
     forest = _from_the_torso(partition, names.limbs)
     tree = next(t for t in forest.trees if tree[0] in t)
     partition = replace(partition, forest=forest)
+    counted = 1.0 if settings.bodies else partition.clustering.count_confidence
+    names = shaken(names, forest, counted)
     limb_of = {body: names.limbs[body] for body in tree}
     model = _model(partition, costs, limb_of, labels)
     near = settings.near_mm * 1e-3 * share
