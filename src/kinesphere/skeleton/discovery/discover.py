@@ -32,6 +32,7 @@ from kinesphere.skeleton.discovery.partition import Partition, find_partition
 from kinesphere.skeleton.discovery.rigidity import worth_grouping
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.discovery.twigs import TORSO, without_twigs
+from kinesphere.skeleton.landmarks import STEADY
 from kinesphere.skeleton.naming import joint_name
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import scaled, size_share
@@ -207,7 +208,7 @@ def _model(
         landmark = Landmark(
             weights={labels[m]: 1 / len(over) for m in over},
             spread=AT_THE_JOINT * costs.share,
-            source="markers that are steady in both limbs",
+            source=STEADY,
         )
         joints.append(
             JointModel(
