@@ -237,3 +237,22 @@ def test_two_markers_and_bodies_of_two_are_refused(recorded, rng):
     ends[:, 3] = ends[:, 2] + 0.3 * stick / np.linalg.norm(stick, axis=1, keepdims=True)
     with pytest.raises(DegenerateMotion, match="three markers that a root needs"):
         discover(Recording(ends, tuple("abcd"), 50.0))
+
+
+def test_bodies_that_stay_where_they_are_are_joined_with_doubt(rng):
+    """A shank swings about its ankle; the foot stands still, as a thing on the floor would."""
+    angles = 0.5 * np.sin(np.linspace(0, 12, 300))
+    turns = Rotation.from_rotvec(angles[:, None] * [0.0, 0.3, 1.0]).as_matrix()
+    shank = np.array([[0.03, 0.1, 0], [-0.03, 0.15, 0.02], [0, 0.2, -0.03], [0.02, 0.3, 0.03]])
+    foot = np.array([[0, -0.04, 0], [0.08, -0.06, 0.02], [0.02, -0.05, -0.06], [0.05, -0.03, 0.04]])
+    points = np.concatenate(
+        [np.einsum("fij,mj->fmi", turns, shank), np.tile(foot, (300, 1, 1))], axis=1
+    )
+    points += rng.normal(scale=0.001, size=points.shape)
+    doubts = {}
+    for way in (0.0, 1.0):  # m, that both go
+        going = points + np.linspace(0, way, 300)[:, None, None]
+        found = discover(Recording(going, tuple("abcdefgh"), 50.0))
+        assert len(found.model.joints) == 1
+        doubts[way] = any("hardly anything shows a joint" in w for w in found.step.warnings)
+    assert doubts == {0.0: True, 1.0: False}

@@ -96,8 +96,19 @@ def doubts_about(
     limb_of: dict[int, str],
     *,
     count_given: bool,
+    faint: Sequence[str],
 ) -> tuple[str, ...]:
-    """Return what a person should be warned of."""
+    """Return what a person should be warned of.
+
+    Parameters
+    ----------
+    partition, labels, model, names, limb_of
+        As `account_of` takes them.
+    count_given
+        Whether the number of bodies was asked for.
+    faint
+        Joints of bodies that do not plainly move together.
+    """
     doubts = []
     if len(partition.forest.trees) > 1:
         sizes = [sum(len(partition.bodies[b]) for b in tree) for tree in partition.forest.trees]
@@ -119,6 +130,11 @@ def doubts_about(
     ]
     if shaky:
         doubts.append(f"another tree of bodies is about as likely at {', '.join(shaky)}")
+    if faint:
+        doubts.append(
+            f"hardly anything shows a joint at {', '.join(faint)}: a limb there stays about where "
+            "it is, as bodies that have nothing to do with each other may"
+        )
     confidence = partition.confidence
     unsure = [
         labels[m]

@@ -124,7 +124,13 @@ def discover(
         settings=settings_as_json(settings),
         findings=account_of(partition, labels, ghosts, model, names, limb_of, near),
         warnings=doubts_about(
-            partition, labels, model, names, limb_of, count_given=settings.bodies is not None
+            partition,
+            labels,
+            model,
+            names,
+            limb_of,
+            count_given=settings.bodies is not None,
+            faint=_faint(partition, costs, limb_of, model),
         ),
     )
     return Discovery(model, step)
@@ -229,6 +235,18 @@ def _model(
         required=tuple(label for segment in segments for label in segment.markers),
         description="found from motion alone",
     )
+
+
+def _faint(
+    partition: Partition, costs: JointCosts, limb_of: dict[int, str], model: TopologicalModel
+) -> list[str]:
+    """Return the joints of bodies that do not plainly move together."""
+    markers = {limb: partition.bodies[body] for body, limb in limb_of.items()}
+    return [
+        joint.name
+        for joint in model.joints
+        if not costs.plain(markers[joint.parent], markers[joint.child])
+    ]
 
 
 def _axes(parent: RigidFit | None, child: RigidFit | None) -> int | None:
