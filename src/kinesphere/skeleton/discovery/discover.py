@@ -31,6 +31,7 @@ from kinesphere.skeleton.discovery.names import Names, find_names, no_names, sha
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
 from kinesphere.skeleton.discovery.rigidity import worth_grouping
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
+from kinesphere.skeleton.discovery.spikes import without_spikes
 from kinesphere.skeleton.discovery.twigs import TORSO, without_twigs
 from kinesphere.skeleton.landmarks import STEADY
 from kinesphere.skeleton.naming import joint_name
@@ -95,8 +96,9 @@ def discover(
             "grouped into bodies; at least 3 are needed. What is never around for "
             f"{settings.ghost_s:g} s counts as a reflection (discovery.ghost_s)"
         )
-    frames = spread_frames(recording.markers, settings.sample_frames, columns.tolist())
-    points = np.ascontiguousarray(recording.markers[frames][:, columns])
+    markers = without_spikes(recording.markers[:, columns])
+    frames = spread_frames(markers, settings.sample_frames, list(range(len(columns))))
+    points = np.ascontiguousarray(markers[frames])
     share = size_share(points)
     limits = scaled(skeleton or SkeletonSettings(), share)
     costs = JointCosts(points, share)
