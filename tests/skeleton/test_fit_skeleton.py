@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from kinesphere.data import PoseFlag, Recording
+from kinesphere.data import Landmark, PoseFlag, Recording
 from kinesphere.errors import BadRecording, DegenerateMotion, KinesphereError
 from kinesphere.labelling import built_in_model
 from kinesphere.skeleton import SkeletonSettings, fit_skeleton
+from kinesphere.skeleton.landmarks import STEADY
 
 EXACT = 1e-4  # m: 0.1 mm on noise-free recordings
 NOISE = 1e-3  # m
@@ -85,6 +86,21 @@ def test_sparse_markers_do_with_a_model_of_limbs_the_actor_lacks(cmu41, cmu41_mo
     )
     thigh = motion.skeleton.limb_names.index("left_thigh")
     assert (motion.flags[:, thigh] == PoseFlag.JOINT_AIDED).all()
+
+
+def test_without_landmarks_no_model_is_said_to_expect_a_centre(cmu41):
+    steady = Landmark({"RWRA": 0.5, "RWRB": 0.5}, spread=0.06, source=STEADY)
+    of = {"trunk": (), "left_hand": (), "right_hand": (steady,)}
+    model = built_in_model("cmu41")
+    joints = tuple(replace(j, landmarks=of.get(j.child, j.landmarks)) for j in model.joints)
+    motion = fit_skeleton(cmu41.recording, replace(model, joints=joints))
+    told = [w for w in motion.history[-1].warnings if "does not tell the centre" in w]
+    assert told == [
+        "the motion does not tell the centre of lumbar, left_wrist; "
+        "it is put midway between the markers of both limbs",
+        "the motion does not tell the centre of right_wrist; "
+        "it is put amid the markers that are steady in both limbs",
+    ]
 
 
 def test_lengths_are_those_of_the_actor(bodies, bodies_motion):

@@ -1,6 +1,6 @@
 """A labelled recording in, a measured skeleton and its motion out."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from kinesphere.data import (
 from kinesphere.errors import BadRecording
 from kinesphere.skeleton.adoption import adopt, find_adoptions
 from kinesphere.skeleton.chain import measure_chain
+from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 from kinesphere.skeleton.report import describe_joint, describe_limb
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import scaled, size_share
@@ -30,6 +31,12 @@ from kinesphere.skeleton.tree import find_tree
 DEFAULT = SkeletonSettings()
 POOR = 0.03
 """m, rms residual from which on markers are no body: soft tissue leaves 22 mm at most."""
+
+ELSEWHERE = {
+    BETWEEN: "put midway between the markers of both limbs",
+    STEADY: "put amid the markers that are steady in both limbs",
+}
+"""Where a centre is that no landmark of a model tells, by its source."""
 
 
 def fit_skeleton(
@@ -110,7 +117,7 @@ def fit_skeleton(
         warnings=(
             *tree.warnings,
             *_poor_fits(tree.limbs, solved.residuals, share),
-            *_open_centres(described.values()),
+            *_open_centres(described.values(), {c: j.source for c, j in joints.items()}),
         ),
         version=kinesphere.__version__,
     )
@@ -148,12 +155,20 @@ def _poor_fits(limbs: Sequence[str], residuals: Array, share: float) -> tuple[st
     )
 
 
-def _open_centres(joints: Iterable[Joint]) -> tuple[str, ...]:
-    """Return the warning that names the joints whose centres the motion does not tell."""
-    names = [joint.name for joint in joints if joint.observability == "undetermined"]
-    if not names:
-        return ()
-    return (
-        f"the motion does not tell the centre of {', '.join(names)}; "
-        "it is where the model's landmarks expect it",
+def _open_centres(joints: Iterable[Joint], sources: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the warnings that name the joints whose centres the motion does not tell.
+
+    Parameters
+    ----------
+    sources
+        Child limb → where its joint was expected, as `expected_centre` says it.
+    """
+    places: dict[str, list[str]] = {}
+    for joint in joints:
+        if joint.observability == "undetermined":
+            place = ELSEWHERE.get(sources[joint.child], "where the model's landmarks expect it")
+            places.setdefault(place, []).append(joint.name)
+    return tuple(
+        f"the motion does not tell the centre of {', '.join(names)}; it is {place}"
+        for place, names in places.items()
     )

@@ -8,6 +8,10 @@ from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import beside
 
+BETWEEN = "between the markers of both limbs"
+"""Source of a centre that no landmark is known of."""
+STEADY = "markers that are steady in both limbs"
+"""Source of a landmark that the motion itself gave."""
 NO_LANDMARK_SHARE = 0.25
 """Without a landmark the centre is expected midway between the limbs, to this share of the way."""
 
@@ -39,7 +43,7 @@ def expected_centre(
     if not np.isfinite(child).all():
         child = own
     spread = max(NO_LANDMARK_SHARE * float(np.linalg.norm(child - own)), 0.02)
-    return (child + own) / 2, spread, "between the markers of both limbs"
+    return (child + own) / 2, spread, BETWEEN
 
 
 def _landmark(

@@ -5,6 +5,7 @@ In the spirit of Hornung, Sar-Dessai, Kobbelt (IEEE VR 2005) and of Kirk, O'Brie
 """
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -39,6 +40,38 @@ def limb_poses(clouds: Mapping[str, Array]) -> dict[str, RigidFit]:
 def joint_cost(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit | None) -> float:
     """Return how badly two limbs look like neighbours, in m; infinite if never seen together.
 
+    Unsteadiness and a share of the way of `joint_view`.
+
+    Parameters
+    ----------
+    a, b : (n_frames, n_markers, 3) m
+    pose_a, pose_b
+        Poses of the limbs; None for a limb with too few markers.
+    """
+    return joint_view(a, b, pose_a, pose_b).cost
+
+
+class JointView(NamedTuple):
+    """How two limbs look as neighbours."""
+
+    unsteady: float
+    """m, how far apart the joint's two images are in each direction; infinite if unknown."""
+    way: float
+    """m, from marker to marker by the joint."""
+
+    @property
+    def cost(self) -> float:
+        """How badly they look so, m."""
+        return self.unsteady + NEARNESS * self.way
+
+
+UNSEEN = JointView(np.inf, 0.0)
+"""Of limbs that are never seen together."""
+
+
+def joint_view(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit | None) -> JointView:
+    """Return how two limbs look as neighbours.
+
     The better of two views: how far apart the joint's two images are in each direction (SCoRE where
     both limbs have poses, spheres about a common centre where one has), and how steady one marker's
     distances to the other limb are (an acromion near an upper arm). Both grow with the way from
@@ -50,33 +83,34 @@ def joint_cost(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit | N
     pose_a, pose_b
         Poses of the limbs; None for a limb with too few markers.
     """
-    centre = _centre_cost(a, b, pose_a, pose_b)
+    centre = _centre_view(a, b, pose_a, pose_b)
     if pose_a is not None and pose_b is not None:
         return centre
-    return min(centre, _distance_cost(a, b), _distance_cost(b, a))
+    views = (centre, _distance_view(a, b), _distance_view(b, a))
+    return min(views, key=lambda view: view.cost)
 
 
-def _centre_cost(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit | None) -> float:
+def _centre_view(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit | None) -> JointView:
     if pose_a is None:
-        return np.inf if pose_b is None else _centre_cost(b, a, pose_b, None)
+        return UNSEEN if pose_b is None else _centre_view(b, a, pose_b, None)
     by_a = into_frame(pose_a.rotations, pose_a.shifts, b)
     if pose_b is None:
         known = by_a[np.isfinite(by_a).all(axis=2)]
         if len(known) == 0:
-            return np.inf
+            return UNSEEN
         centre = sphere_centre(by_a, np.median(known, axis=0), ridge=1e-2)
         off = _deviations(np.linalg.norm(by_a - centre, axis=2))
         own = into_frame(pose_a.rotations, pose_a.shifts, a)
         far = _nearest(own, centre) + _nearest(by_a, centre)
-        return float(np.sqrt(np.mean(off**2))) + NEARNESS * far
+        return JointView(float(np.sqrt(np.mean(off**2))), far)
     relative = np.swapaxes(pose_a.rotations, 1, 2) @ pose_b.rotations
     shifts = into_frame(pose_a.rotations, pose_a.shifts, pose_b.shifts[:, None])[:, 0]
     in_a, in_b, rms = score_centre(relative, shifts)
     if not np.isfinite(rms):
-        return np.inf
+        return UNSEEN
     own_a = into_frame(pose_a.rotations, pose_a.shifts, a)
     own_b = into_frame(pose_b.rotations, pose_b.shifts, b)
-    return rms / 3**0.5 + NEARNESS * (_nearest(own_a, in_a) + _nearest(own_b, in_b))
+    return JointView(rms / 3**0.5, _nearest(own_a, in_a) + _nearest(own_b, in_b))
 
 
 def _nearest(points: Array, centre: Array) -> float:
@@ -86,15 +120,16 @@ def _nearest(points: Array, centre: Array) -> float:
     return float(min(usual, default=np.inf))
 
 
-def _distance_cost(a: Array, b: Array) -> float:
+def _distance_view(a: Array, b: Array) -> JointView:
     """Return how unsteady and long the distances to ``b`` are, for the best marker of ``a``."""
-    best = np.inf
+    best = UNSEEN
     for m in range(a.shape[1]):
         distance = np.linalg.norm(b - a[:, m : m + 1], axis=2)
         if not np.isfinite(distance).any(axis=0).all():
             continue
         usual = min(float(np.median(d[np.isfinite(d)])) for d in distance.T)
-        best = min(best, float(_deviations(distance).mean()) + NEARNESS * usual)
+        view = JointView(float(_deviations(distance).mean()), usual)
+        best = min(best, view, key=lambda view: view.cost)
     return best
 
 

@@ -96,6 +96,21 @@ def test_gaps_ghosts_and_soft_tissue_leave_the_person(actor, owner, limbs_of):
     assert sorted(seen.step.findings["ghosts"]) == [f"*{i}" for i in range(n - 5, n)]
 
 
+def test_samples_missing_at_random_leave_the_person(found, recorded, rng):
+    markers = recorded.markers.copy()
+    markers[rng.random(markers.shape[:2]) < 0.3] = np.nan
+    assert as_told(discover(replace(recorded, markers=markers))) == as_told(found)
+
+
+def test_where_all_counts_as_reflections_the_setting_is_named(recorded):
+    seen_at_times = recorded.markers.copy()
+    seen_at_times[np.arange(recorded.n_frames) % 20 > 4] = np.nan  # 0.2 s of each 0.8 s
+    for turn in (1, 2):  # a third of the markers at a time
+        seen_at_times[:, turn::3] = np.roll(seen_at_times[:, turn::3], 5 * turn, axis=0)
+    with pytest.raises(BadRecording, match=r"0 of .*0\.5 s .*discovery\.ghost_s"):
+        discover(replace(recorded, markers=seen_at_times))
+
+
 def test_the_same_input_gives_the_same_output(found, recorded):
     again = discover(recorded)
     assert again.model == found.model or as_told(again) == as_told(found)
@@ -175,6 +190,13 @@ def test_cloth_is_told_as_loose_and_trusted_with_nothing(recorded, owner, rng):
     assert {segment.name for segment in found.model.segments} == set(owner)
 
 
+@pytest.mark.parametrize("size", [3, 4, 5, 8])
+def test_a_single_thing_without_any_noise_is_one_limb(rng, moving_bodies, size):
+    points, _ = moving_bodies(rng, (size,))
+    found = discover(Recording(points, tuple("abcdefgh"[:size]), 100.0))
+    assert [len(segment.markers) for segment in found.model.segments] == [size]
+
+
 def test_a_single_rigid_thing_is_one_limb(rng):
     steps = np.cumsum(rng.normal(scale=0.03, size=(2, 300, 3)), axis=1)
     turns = Rotation.from_rotvec(steps[0]).as_matrix()
@@ -215,3 +237,22 @@ def test_two_markers_and_bodies_of_two_are_refused(recorded, rng):
     ends[:, 3] = ends[:, 2] + 0.3 * stick / np.linalg.norm(stick, axis=1, keepdims=True)
     with pytest.raises(DegenerateMotion, match="three markers that a root needs"):
         discover(Recording(ends, tuple("abcd"), 50.0))
+
+
+def test_bodies_that_stay_where_they_are_are_joined_with_doubt(rng):
+    """A shank swings about its ankle; the foot stands still, as a thing on the floor would."""
+    angles = 0.5 * np.sin(np.linspace(0, 12, 300))
+    turns = Rotation.from_rotvec(angles[:, None] * [0.0, 0.3, 1.0]).as_matrix()
+    shank = np.array([[0.03, 0.1, 0], [-0.03, 0.15, 0.02], [0, 0.2, -0.03], [0.02, 0.3, 0.03]])
+    foot = np.array([[0, -0.04, 0], [0.08, -0.06, 0.02], [0.02, -0.05, -0.06], [0.05, -0.03, 0.04]])
+    points = np.concatenate(
+        [np.einsum("fij,mj->fmi", turns, shank), np.tile(foot, (300, 1, 1))], axis=1
+    )
+    points += rng.normal(scale=0.001, size=points.shape)
+    doubts = {}
+    for way in (0.0, 1.0):  # m, that both go
+        going = points + np.linspace(0, way, 300)[:, None, None]
+        found = discover(Recording(going, tuple("abcdefgh"), 50.0))
+        assert len(found.model.joints) == 1
+        doubts[way] = any("hardly anything shows a joint" in w for w in found.step.warnings)
+    assert doubts == {0.0: True, 1.0: False}

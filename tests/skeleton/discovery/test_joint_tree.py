@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from kinesphere.skeleton.discovery.joint_tree import (
     Edge,
@@ -13,6 +14,9 @@ from kinesphere.skeleton.discovery.joint_tree import (
     rerooted,
     similar_forests,
 )
+
+FRAMES = 300
+NOISE = 0.001  # m
 
 
 @pytest.fixture(scope="module")
@@ -147,3 +151,39 @@ def test_costs_do_not_depend_on_who_is_asked_first(recorded, true_bodies):
     one, other = JointCosts(points, 1.0), JointCosts(points, 1.0)
     for a, b in pairwise(true_bodies[1]):
         assert one.between(a, b) == pytest.approx(other.between(b, a), rel=0.05)
+
+
+def swinging(rng, place, still):
+    """Return a shank swinging about an ankle, and a body at ``place`` that stands still, m."""
+    angles = 0.5 * np.sin(np.linspace(0, 12, FRAMES))
+    turns = Rotation.from_rotvec(angles[:, None] * [0.0, 0.3, 1.0]).as_matrix()
+    shank = np.array([[0.03, 0.1, 0], [-0.03, 0.15, 0.02], [0, 0.2, -0.03], [0.02, 0.3, 0.03]])
+    points = np.concatenate(
+        [np.einsum("fij,mj->fmi", turns, shank), np.tile(still + np.array(place), (FRAMES, 1, 1))],
+        axis=1,
+    )
+    return points + rng.normal(scale=NOISE, size=points.shape)
+
+
+STILL = np.array(
+    [[0.0, -0.04, 0.0], [0.08, -0.06, 0.02], [0.02, -0.05, -0.06], [0.05, -0.03, 0.04]]
+)
+
+
+def test_a_foot_that_stands_still_meets_its_shank_and_a_thing_beside_does_not(rng):
+    bodies = [np.arange(4), np.arange(4, 8)]
+    foot = swinging(rng, (0.0, 0.0, 0.0), STILL)
+    assert len(find_forest(JointCosts(foot, 1.0), bodies).trees) == 1
+    thing = swinging(rng, (0.5, 0.0, 0.0), STILL)
+    assert len(find_forest(JointCosts(thing, 1.0), bodies).trees) == 2
+
+
+def test_two_that_stand_about_are_not_joined_by_standing(rng):
+    """Each sways by centimetres for itself: no point goes about with both."""
+    sway = np.cumsum(rng.normal(scale=0.002, size=(2, FRAMES, 1, 3)), axis=1)
+    sway *= 0.015 / sway.std(axis=1, keepdims=True)
+    one, other = sway + STILL
+    points = np.concatenate([one, other + np.array([0.6, 0.0, 0.0])], axis=1)
+    points += rng.normal(scale=NOISE, size=points.shape)
+    forest = find_forest(JointCosts(points, 1.0), [np.arange(4), np.arange(4, 8)])
+    assert len(forest.trees) == 2

@@ -16,8 +16,27 @@ def test_reflections_are_told_from_markers_by_how_long_they_stay():
     seen[100:115, 1] = True  # a reflection of 0.3 s
     seen[:, 2] = False  # never seen
     seen[50:90, 3] = False  # an honest gap
-    assert worth_grouping(seen, RATE, 0.5).tolist() == [False, False, False, True, True]
+    assert worth_grouping(seen, RATE, 0.5).tolist() == [True, False, False, True, True]
     assert worth_grouping(seen, RATE, 0.0).tolist() == [True, False, False, True, True]
+
+
+def test_a_marker_that_blinks_while_it_is_around_is_no_reflection():
+    seen = np.zeros((1000, 4), dtype=bool)
+    seen[:, 3] = True
+    seen[0:150, 0] = True
+    seen[0:150:3, 0] = False  # a third missing, one frame at a time
+    seen[0:150, 1] = True
+    for start in range(0, 150, 15):  # gone for 0.2 s at a time: ten reflections
+        seen[start : start + 10, 1] = False
+    for start in range(0, 1000, 50):  # 20 reflections, each of 0.3 s
+        seen[start : start + 15, 2] = True
+    assert worth_grouping(seen, RATE, 0.5).tolist() == [True, False, False, True]
+
+
+@pytest.mark.parametrize("share", [0.05, 0.3])
+def test_samples_missing_at_random_make_no_reflections(rng, share):
+    seen = rng.random((300, 41)) > share
+    assert worth_grouping(seen, 100.0, 0.5).all()
 
 
 def test_a_recording_shorter_than_two_ghosts_keeps_its_markers():
@@ -27,6 +46,7 @@ def test_a_recording_shorter_than_two_ghosts_keeps_its_markers():
 def test_longest_runs_count_the_ends():
     seen = np.array([[1, 0, 1], [1, 0, 0], [0, 0, 1], [1, 0, 1]], dtype=bool)
     assert longest_runs(seen).tolist() == [2, 0, 2]
+    assert longest_runs(seen, 1).tolist() == [4, 0, 4]
 
 
 def test_noise_is_what_steady_distances_wander_by(rng, moving_bodies):
@@ -45,6 +65,30 @@ def test_who_stands_still_is_told_to_move(rng):
 def test_one_rigid_thing_on_its_way_is_one_body(rng, moving_bodies):
     points, _ = moving_bodies(rng, (6,), noise=3e-4)
     assert measure_rigidity(points).is_one_body
+
+
+@pytest.mark.parametrize("size", [3, 4, 5, 8])
+def test_a_thing_rigid_to_the_last_bit_is_one_body(rng, moving_bodies, size):
+    points, _ = moving_bodies(rng, (size,))
+    assert measure_rigidity(points).is_one_body
+    assert measure_rigidity(points.astype(np.float32).astype(float) + 40.0).is_one_body
+
+
+def test_what_cannot_be_resolved_is_no_wander(rng, moving_bodies):
+    points, of = moving_bodies(rng, (4, 3))
+    rigidity = measure_rigidity(points)
+    within = (of[:, None] == of) & ~np.eye(7, dtype=bool)
+    assert np.ptp(rigidity.wander[within]) < 1e-9  # no pattern of rounding errors
+    assert 1e-6 < rigidity.noise < 3e-5  # m, of bodies half a metre apart
+    assert not rigidity.is_one_body
+
+
+def test_frames_that_are_all_the_same_hold_no_motion(rng):
+    points = np.repeat(rng.normal(size=(1, 20, 3)), 500, axis=0)
+    points[:250, 3] = np.nan
+    points[250:, 4] = np.nan  # never seen with the other
+    with pytest.raises(DegenerateMotion, match="nothing tells one body from another"):
+        measure_rigidity(points)
 
 
 @pytest.mark.parametrize("shape", [(200, 2), (9, 12)])

@@ -8,14 +8,11 @@ from kinesphere.data import Array, Json, TopologicalModel
 from kinesphere.skeleton.discovery.clustering import merge_curve
 from kinesphere.skeleton.discovery.joint_markers import owners
 from kinesphere.skeleton.discovery.joint_tree import DOUBTFUL, Edge
-from kinesphere.skeleton.discovery.names import Names
+from kinesphere.skeleton.discovery.names import DOUBTFUL_COUNT, Names
 from kinesphere.skeleton.discovery.partition import Partition
 
 CURVE = 30
 """Most bodies in the merge curve."""
-DOUBTFUL_COUNT = 0.3
-"""Confidence below which another number of bodies would do about as well: it is above .7 on
-synthetic bodies and rigid plates, .27 to .73 on sparse markers of a person."""
 DOUBTFUL_MARKER = 0.5
 """Confidence below which a marker is steadier in the next body than in its own."""
 
@@ -99,8 +96,19 @@ def doubts_about(
     limb_of: dict[int, str],
     *,
     count_given: bool,
+    faint: Sequence[str],
 ) -> tuple[str, ...]:
-    """Return what a person should be warned of."""
+    """Return what a person should be warned of.
+
+    Parameters
+    ----------
+    partition, labels, model, names, limb_of
+        As `account_of` takes them.
+    count_given
+        Whether the number of bodies was asked for.
+    faint
+        Joints of bodies that do not plainly move together.
+    """
     doubts = []
     if len(partition.forest.trees) > 1:
         sizes = [sum(len(partition.bodies[b]) for b in tree) for tree in partition.forest.trees]
@@ -122,6 +130,11 @@ def doubts_about(
     ]
     if shaky:
         doubts.append(f"another tree of bodies is about as likely at {', '.join(shaky)}")
+    if faint:
+        doubts.append(
+            f"hardly anything shows a joint at {', '.join(faint)}: a limb there stays about where "
+            "it is, as bodies that have nothing to do with each other may"
+        )
     confidence = partition.confidence
     unsure = [
         labels[m]

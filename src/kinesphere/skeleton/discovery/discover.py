@@ -27,11 +27,13 @@ from kinesphere.skeleton.discovery.joint_tree import (
     rerooted,
     similar_forests,
 )
-from kinesphere.skeleton.discovery.names import Names, find_names, no_names
+from kinesphere.skeleton.discovery.names import Names, find_names, no_names, shaken
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
 from kinesphere.skeleton.discovery.rigidity import worth_grouping
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
+from kinesphere.skeleton.discovery.spikes import without_spikes
 from kinesphere.skeleton.discovery.twigs import TORSO, without_twigs
+from kinesphere.skeleton.landmarks import STEADY
 from kinesphere.skeleton.naming import joint_name
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import scaled, size_share
@@ -91,10 +93,12 @@ def discover(
     if len(columns) < 3:
         raise BadRecording(
             f"{len(columns)} of {recording.n_markers} markers are seen for long enough to be "
-            "grouped into bodies; at least 3 are needed"
+            "grouped into bodies; at least 3 are needed. What is never around for "
+            f"{settings.ghost_s:g} s counts as a reflection (discovery.ghost_s)"
         )
-    frames = spread_frames(recording.markers, settings.sample_frames, columns.tolist())
-    points = np.ascontiguousarray(recording.markers[frames][:, columns])
+    markers = without_spikes(recording.markers[:, columns])
+    frames = spread_frames(markers, settings.sample_frames, list(range(len(columns))))
+    points = np.ascontiguousarray(markers[frames])
     share = size_share(points)
     limits = scaled(skeleton or SkeletonSettings(), share)
     costs = JointCosts(points, share)
@@ -107,6 +111,8 @@ def discover(
     forest = _from_the_torso(partition, names.limbs)
     tree = next(t for t in forest.trees if tree[0] in t)
     partition = replace(partition, forest=forest)
+    counted = 1.0 if settings.bodies else partition.clustering.count_confidence
+    names = shaken(names, forest, counted)
     limb_of = {body: names.limbs[body] for body in tree}
     model = _model(partition, costs, limb_of, labels)
     near = settings.near_mm * 1e-3 * share
@@ -120,7 +126,13 @@ def discover(
         settings=settings_as_json(settings),
         findings=account_of(partition, labels, ghosts, model, names, limb_of, near),
         warnings=doubts_about(
-            partition, labels, model, names, limb_of, count_given=settings.bodies is not None
+            partition,
+            labels,
+            model,
+            names,
+            limb_of,
+            count_given=settings.bodies is not None,
+            faint=_faint(partition, costs, limb_of, model),
         ),
     )
     return Discovery(model, step)
@@ -204,7 +216,7 @@ def _model(
         landmark = Landmark(
             weights={labels[m]: 1 / len(over) for m in over},
             spread=AT_THE_JOINT * costs.share,
-            source="markers that are steady in both limbs",
+            source=STEADY,
         )
         joints.append(
             JointModel(
@@ -225,6 +237,18 @@ def _model(
         required=tuple(label for segment in segments for label in segment.markers),
         description="found from motion alone",
     )
+
+
+def _faint(
+    partition: Partition, costs: JointCosts, limb_of: dict[int, str], model: TopologicalModel
+) -> list[str]:
+    """Return the joints of bodies that do not plainly move together."""
+    markers = {limb: partition.bodies[body] for body, limb in limb_of.items()}
+    return [
+        joint.name
+        for joint in model.joints
+        if not costs.plain(markers[joint.parent], markers[joint.child])
+    ]
 
 
 def _axes(parent: RigidFit | None, child: RigidFit | None) -> int | None:

@@ -69,7 +69,8 @@ def resettle(
     loose
         Markers that belong to none.
     """
-    kept, loose = _without_strays(rigidity, bodies, chain_ratio)
+    kept = _without_strays(rigidity, bodies, chain_ratio)
+    loose: list[int] = []
     for _ in range(2 * len(rigidity.mean)):
         alone = [b for b, members in enumerate(kept) if len(members) == 1]
         if not alone:
@@ -101,8 +102,8 @@ _Move = tuple[float, int, int, int]
 
 def _without_strays(
     rigidity: Rigidity, bodies: Sequence[Members], chain_ratio: float
-) -> tuple[list[Members], list[int]]:
-    """Set markers free that a steady body does not hold, far from steady with any of it."""
+) -> list[Members]:
+    """Make bodies of their own of markers that are far from steady with all of a steady body."""
     usual = usual_wander(rigidity.wander, bodies) or rigidity.noise
     kept: list[Members] = []
     for members in bodies:
@@ -118,7 +119,7 @@ def _without_strays(
             kept.append(body[worst : worst + 1])
             body = np.delete(body, worst)
         kept.append(body)
-    return sorted(kept, key=lambda body: int(body[0])), []
+    return sorted(kept, key=lambda body: int(body[0]))
 
 
 def _linked(

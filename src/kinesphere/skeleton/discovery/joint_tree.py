@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array
 from kinesphere.geometry.rigid import RigidFit
-from kinesphere.skeleton.topology import joint_cost, limb_poses, spanning_tree
+from kinesphere.skeleton.averages import median_seen
+from kinesphere.skeleton.topology import JointView, joint_view, limb_poses, spanning_tree
 
 FRAMES = 300
 """Frames that joints are looked for on."""
@@ -18,6 +19,16 @@ APART = 0.06
 recordings at hand joints cost up to 24 mm, bodies of different people a tenth of their way."""
 FAR_BEYOND = 3.0
 """Times the median cost of the cheaper joints from which on one is none."""
+
+PLAIN, SHARED = 0.25, 0.5
+"""Share of the lesser of two bodies' movements in the world, each direction, by which their images
+of a joint may be apart: plainly moving together (recordings at hand have up to 0.19), and more so
+than each by itself."""
+STEADY = 0.01
+"""m, most that noise and skin alone take the images apart; beyond it only the first will do."""
+ADJOINING = 0.3
+"""m between the nearest markers of two bodies up to which steady ones may meet though neither
+shows: a foot that stands still and its shank."""
 
 DOUBTFUL = 0.15
 """Confidence of an edge below which another one is called about as likely: 5 of 15 wrong joints of
@@ -96,13 +107,37 @@ class JointCosts:
         self._costs: dict[tuple[tuple[int, ...], tuple[int, ...]], float] = {}
 
     def between(self, a: Members, b: Members) -> float:
-        """Return the cost in m of a joint between two bodies."""
+        """Return the cost in m of a joint between two bodies; infinite where nothing shows one."""
         key = (tuple(map(int, a)), tuple(map(int, b)))
         if key not in self._costs:
-            self._costs[key] = joint_cost(
-                self.points[:, a], self.points[:, b], self.pose(a), self.pose(b)
-            )
+            view = joint_view(self.points[:, a], self.points[:, b], self.pose(a), self.pose(b))
+            self._costs[key] = view.cost if self._may_meet(a, b, view) else np.inf
         return self._costs[key]
+
+    def plain(self, a: Members, b: Members) -> bool:
+        """Return whether two bodies plainly move together, rather than each standing about."""
+        view = joint_view(self.points[:, a], self.points[:, b], self.pose(a), self.pose(b))
+        return view.unsteady < PLAIN * self._moved(a, b)
+
+    def _moved(self, a: Members, b: Members) -> float:
+        """Return how far the one moves that moves less, m."""
+        return min(_moved(self.points[:, a]), _moved(self.points[:, b]))
+
+    def _may_meet(self, a: Members, b: Members, view: JointView) -> bool:
+        """Return whether two bodies move together, or are near enough to meet all the same.
+
+        A point that stays where it is in both shows a joint only if it goes about with them: two
+        people who stand still, a foot and a thing on the floor have many.
+        """
+        moved = self._moved(a, b)
+        if view.unsteady < PLAIN * moved:
+            return True
+        if view.unsteady > STEADY * self.share:
+            return False
+        if view.unsteady < SHARED * moved:
+            return True
+        apart = np.linalg.norm(self.points[:, a, None] - self.points[:, None, b], axis=-1)
+        return bool(np.nanmin(median_seen(apart), initial=np.inf) <= ADJOINING * self.share)
 
     def pose(self, members: Members) -> RigidFit | None:
         """Return the poses of a body in the frames of ``points``; None if it has none."""
@@ -110,6 +145,12 @@ class JointCosts:
         if key not in self._poses:
             self._poses[key] = limb_poses({"": self.points[:, members]}).get("")
         return self._poses[key]
+
+
+def _moved(points: Array) -> float:
+    """Return how far a body's markers move in the world, rms in each direction, m."""
+    off = points - median_seen(points)
+    return float(np.sqrt(np.mean(off[np.isfinite(off)] ** 2))) if np.isfinite(off).any() else 0.0
 
 
 def find_forest(costs: JointCosts, bodies: Sequence[Members]) -> Forest:

@@ -7,11 +7,17 @@ import numpy as np
 
 from kinesphere.data import Json
 from kinesphere.skeleton.discovery.figure import Figure
+from kinesphere.skeleton.discovery.joint_tree import DOUBTFUL, Forest
 from kinesphere.skeleton.discovery.person import Person, find_person
 from kinesphere.skeleton.discovery.sides import Sides, find_sides
 
 SURE = 0.75
 """Least confidence of a reading for names to be given."""
+EVEN = 0.5
+"""Confidence below which names are as likely wrong as right, which is said."""
+DOUBTFUL_COUNT = 0.3
+"""Confidence below which another number of bodies would do about as well: it is above .7 on
+synthetic bodies and rigid plates, .27 to .73 on sparse markers of a person."""
 LEG = ("thigh", "shank", "foot")
 ARM = ("upper_arm", "forearm", "hand")
 
@@ -49,11 +55,19 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
         return nobody
     person, confidence = found
     if not person.convincing:
+        if person.in_proportion:
+            doubt = (
+                "by its proportions the tree could be a person, but the size is not a person's "
+                f"(legs of someone of {person.stature:.2f} m): limbs are numbered; if it was a "
+                "person, the unit of length is wrong"
+            )
+            nobody = replace(nobody, doubt=doubt)
         return replace(nobody, cost=person.cost)
     account: dict[str, Json] = {
         "person": True,
         "tree_confidence": round(confidence, 3),
         "cost_per_length": round(person.cost / person.lengths, 2),
+        "stature_m": round(person.stature, 2),
     }
     if confidence < SURE:
         doubt = (
@@ -71,6 +85,39 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     given |= _sided(person, sides)
     sure = confidence * sides.confidence
     return Names(numbered(given, tree), sure, account, cost=person.cost)
+
+
+def shaken(names: Names, forest: Forest, count_confidence: float) -> Names:
+    """Return the names with what doubt in the bodies they stand on leaves of their confidence.
+
+    A name is no surer than the tree it was read off: where the most doubtful edge of a named limb
+    has a rival of the same cost, or another number of bodies would do as well, half is left.
+
+    Parameters
+    ----------
+    names
+        As proportions and sides give them.
+    forest
+        Of all bodies.
+    count_confidence
+        0…1 that there are so many bodies.
+    """
+    if not names.given:
+        return names
+    named = {body for body, limb in names.limbs.items() if not limb.startswith("limb_")}
+    edges = [edge.confidence for edge in forest.edges if named & {edge.a, edge.b}]
+    tree = (1 + min(1.0, min(edges, default=1.0) / DOUBTFUL)) / 2
+    count = (1 + min(1.0, count_confidence / DOUBTFUL_COUNT)) / 2
+    sure = names.confidence * tree * count
+    account = names.account | {"bodies_confidence": round(tree * count, 3)}
+    doubt = names.doubt
+    if sure < EVEN:
+        told = (
+            f"the names of limbs are about as likely wrong as right (confidence {sure:.2f}): check "
+            "them"
+        )
+        doubt = f"{doubt}; {told}" if doubt else told
+    return replace(names, confidence=sure, account=account, doubt=doubt)
 
 
 def no_names(tree: Sequence[int], doubt: str = "") -> Names:

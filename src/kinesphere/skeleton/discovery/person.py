@@ -25,6 +25,8 @@ UNEXPLAINED = 2.0
 LIKELY = 2.0
 """Most cost for each length that is judged, in squared standard deviations: of a person 1 at most
 is expected, of what is none far more."""
+STATURE, SIZES = 1.6, 0.25
+"""m, and standard deviation of its logarithm: from a child of two, 0.85 m, to a tall adult."""
 SHARPNESS = 2.0
 """Difference of costs that makes one reading e times likelier than another."""
 
@@ -49,11 +51,28 @@ class Person:
     """Squared standard deviations of the proportions, and of what is missing or too much."""
     lengths: int = 0
     """How many lengths were judged."""
+    stature: float = np.nan
+    """m, what the legs are the legs of."""
+
+    @property
+    def nobody(self) -> float:
+        """What it costs to see no person at all."""
+        return LIKELY * self.lengths
+
+    @property
+    def size(self) -> float:
+        """Share of the cost that is owed to the stature alone."""
+        return _off(self.stature, STATURE, SIZES) ** 2
 
     @property
     def convincing(self) -> bool:
-        """Whether the proportions are those of a person."""
-        return self.cost <= LIKELY * self.lengths
+        """Whether proportions and size are those of a person."""
+        return self.cost <= self.nobody
+
+    @property
+    def in_proportion(self) -> bool:
+        """Whether the proportions are those of a person of some size."""
+        return self.cost - self.size <= self.nobody
 
     @property
     def hips_at(self) -> int:
@@ -64,8 +83,8 @@ class Person:
 def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | None:
     """Return the likeliest reading of a tree as a person and its confidence 0…1.
 
-    The confidence compares with the best reading in which any body is another limb. None where no
-    part of the tree can be two legs.
+    The confidence compares with the best reading in which any body is another limb, and with
+    seeing no person at all. None where no part of the tree can be two legs.
 
     Parameters
     ----------
@@ -81,7 +100,8 @@ def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | N
     best = readings[0]
     mine = _limbs(best)
     rival = next((p.cost for p in readings[1:] if _contradicts(_limbs(p), mine)), np.inf)
-    return best, float(1 / (1 + np.exp(-(rival - best.cost) / SHARPNESS)))
+    margin = min(rival, best.nobody) - best.cost
+    return best, float(1 / (1 + np.exp(-margin / SHARPNESS)))
 
 
 def _readings(figure: Figure, tree: Sequence[int]) -> Iterator[Person]:
@@ -158,7 +178,8 @@ def _judged(figure: Figure, person: Person, n_bodies: int) -> Person:
     blades = sum(at != person.trunk for at, _ in person.arms)
     missing += EXTRA * blades + UNEXPLAINED * (n_bodies - blades - len(_limbs(person)))
     square = np.nan_to_num(np.array(off) ** 2, nan=np.inf)
-    return replace(person, cost=float(square.sum()) + missing, lengths=len(off))
+    judged = replace(person, lengths=len(off), stature=stature)
+    return replace(judged, cost=float(square.sum()) + missing + judged.size)
 
 
 def _off(found: float, expected: float, deviation: float) -> float:

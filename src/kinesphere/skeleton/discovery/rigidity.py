@@ -8,13 +8,21 @@ from numpy.typing import NDArray
 from kinesphere.data import Array, Mask
 from kinesphere.errors import BadRecording, DegenerateMotion
 from kinesphere.geometry.pair_distances import pair_distances
+from kinesphere.skeleton.averages import median_seen
 
 LEAST_SHARE = 0.05
 """Share of the frames in which a marker must be seen to be grouped."""
+MOSTLY = 0.5
+"""Share of the frames from which on no reflection is seen, however short its runs."""
+BLINK = 0.1
+"""Share of a reflection's longest life that a marker may be missing without being gone."""
 LEAST_FRAMES = 10
 """Frames that must show a marker, or two of them together, to say anything."""
 STILL = 3.0
 """Where no distance wanders so many times more than the steadiest ones do, nothing has moved."""
+RESOLVED = 1e-5
+"""Share of the usual distance between two markers below which nothing is told apart: no optical
+system does, and what is left of exactly rigid data is rounding error, of any pattern."""
 ALL_ONE = 0.02
 """m: a thing whose every distance wanders less than its noise, and that itself travels this far
 between frames of the sample, is one rigid body rather than a person who stands still."""
@@ -33,7 +41,7 @@ class Rigidity:
     where two markers are hardly ever seen together."""
     noise: float
     """m, wander of the distance to a marker's steadiest neighbour, median over markers: what is
-    steady in this recording."""
+    steady in this recording. Never less than can be resolved."""
 
     def unlikeness(self, near: float) -> Array:
         """Return (n, n) m: wander, the larger the farther apart two markers are.
@@ -58,20 +66,33 @@ class Rigidity:
 def worth_grouping(seen: Mask, rate: float, ghost_s: float) -> Mask:
     """Return which markers are seen often and long enough, (n_frames, n) → (n,).
 
-    Reflections live for tenths of a second; a body's marker is seen at least once for longer.
+    Reflections live for tenths of a second; a body's marker is around at least once for longer,
+    though single frames of it may be missing, or in most of the frames.
     """
     n_frames = len(seen)
     share = seen.sum(axis=0) / max(1, seen.any(axis=1).sum())
     stretch = min(ghost_s * rate, n_frames / 2)
-    return np.asarray((share >= LEAST_SHARE) & (longest_runs(seen) >= stretch))
+    blink = max(1, int(BLINK * ghost_s * rate))
+    around = longest_runs(seen, blink) >= stretch
+    return np.asarray((share >= LEAST_SHARE) & (around | (share >= MOSTLY)))
 
 
-def longest_runs(seen: Mask) -> NDArray[np.intp]:
-    """Return the longest run of frames that show each marker, (n_frames, n) → (n,)."""
+def longest_runs(seen: Mask, bridged: int = 0) -> NDArray[np.intp]:
+    """Return the longest run of frames that show each marker, (n_frames, n) → (n,).
+
+    Parameters
+    ----------
+    seen
+    bridged
+        Up to so many missing frames do not end a run, and count.
+    """
     longest = np.zeros(seen.shape[1], dtype=np.intp)
     for m, column in enumerate(seen.T):
-        edges = np.flatnonzero(np.diff(np.r_[0, column.astype(np.int8), 0]))
-        longest[m] = max((edges[1::2] - edges[::2]).tolist(), default=0)
+        frames = np.flatnonzero(column)
+        if len(frames):
+            breaks = np.flatnonzero(np.diff(frames) > bridged + 1)
+            first, last = np.r_[0, breaks + 1], np.r_[breaks, len(frames) - 1]
+            longest[m] = (frames[last] - frames[first]).max() + 1
     return longest
 
 
@@ -98,6 +119,8 @@ def measure_rigidity(points: Array) -> Rigidity:
         )
     found = pair_distances(points)
     wander = np.where(found.frames >= LEAST_FRAMES, found.trimmed_std, np.nan)
+    finest = resolution(points, found.mean)
+    wander = np.hypot(wander, finest * ~np.eye(n, dtype=bool))
     alone = wander + np.diag(np.full(n, np.inf))
     steadiest = np.nanmin(np.where(np.isfinite(alone), alone, np.inf), axis=1)
     steady = steadiest[np.isfinite(steadiest)]
@@ -108,8 +131,26 @@ def measure_rigidity(points: Array) -> Rigidity:
     return rigidity
 
 
+def resolution(points: Array, mean: Array) -> float:
+    """Return how small a wander means nothing, m.
+
+    A share of the usual distance between two markers, or a step of single precision, which files
+    hold coordinates in, where the world's origin is that far away.
+
+    Parameters
+    ----------
+    points : (n_sample, n, 3) m
+    mean : (n, n) m
+        Mean distances, NaN where unknown.
+    """
+    usual = float(median_seen(mean[np.triu_indices(len(mean), 1)]))
+    away = float(median_seen(np.abs(points).max(axis=2).ravel()))
+    return float(np.nanmax([RESOLVED * usual, np.finfo(np.float32).eps * away]))
+
+
 def _check_motion(rigidity: Rigidity) -> None:
-    if rigidity.is_one_body and travels(rigidity.points) < ALL_ONE:
+    way = travels(rigidity.points)
+    if way <= STILL * rigidity.noise or (rigidity.is_one_body and way < ALL_ONE):
         raise DegenerateMotion(
             "the markers hardly move relative to each other (distances wander by "
             f"{rigidity.most * 1e3:.1f} mm, {rigidity.noise * 1e3:.1f} mm within bodies): nothing "

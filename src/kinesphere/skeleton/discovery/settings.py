@@ -50,7 +50,8 @@ class DiscoverySettings:
     )
     ghost_s: float = setting(
         0.5,
-        "a marker never seen for so long at a stretch is a reflection",
+        "a marker never around for so long, nor in half of the frames, is a reflection; breaks up "
+        "to a tenth of it do not count",
         unit="s",
         low=0.0,
         high=60.0,
