@@ -19,7 +19,7 @@ MOST_FRAMES = 1200  # of longer motion, every second, third… frame
 USUAL = np.log([0.3, 0.3, 0.1, 0.5, 0.5, 0.5, 0.02, 0.4])
 """Deviations of both angles and the twist (rad) and their memories (s), error of a pose (rad) and
 its memory (s): 17°, 17°, 6°, half a second, 1°, 0.4 s."""
-FACTORS = np.array([1.0, 1.0, 1.0, 0.7, 0.7, 0.7, 0.7, 1.0])
+FACTORS = np.array([1.0, 1.0, 1.0, 0.7, 0.7, 0.7, 0.7, 0.5])
 """Standard deviations of these logarithms: half or double is nothing unusual."""
 WIDEST = 3.0  # of those deviations
 FLOOR = 0.002  # rad, of an angle without any error
