@@ -1,0 +1,1 @@
+"""Motion without markers: a body's surface fitted to the images of several cameras."""
