@@ -29,6 +29,14 @@ class BadSetting(KinesphereError):
     """A setting has no such name, no such value, or lies outside its range."""
 
 
+class BadCamera(KinesphereError):
+    """A camera's calibration contradicts itself, or does not fit its images."""
+
+
+class BadScene(KinesphereError):
+    """A scene cannot be tracked as it is: images, calibration or times do not fit together."""
+
+
 class DegenerateMotion(KinesphereError):
     """The motion does not determine what was asked for."""
 
