@@ -111,7 +111,7 @@ def test_shares_give_the_point_in_space(rng):
     pixels = corners[:, :2] / corners[:, 2:] * 30 + [18.0, 14.0]
     faces = np.array([[0, 2, 1]], dtype=np.int32)
     ids, near = visible_faces(pixels, corners[:, 2], faces, WIDTH, HEIGHT)
-    rows, columns, shares = barycentric(ids, near, pixels, corners[:, 2], faces)
+    rows, columns, shares = barycentric(ids, pixels, corners[:, 2], faces)
     assert len(rows) == (ids == 0).sum() > 100
     points = shares @ corners[faces[0]]
     assert_allclose(points[:, 0] / points[:, 2] * 30 + 18, columns, atol=1e-9)

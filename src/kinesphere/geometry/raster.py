@@ -61,11 +61,7 @@ def visible_faces(
 
 
 def barycentric(
-    face_ids: NDArray[np.int32],
-    nearness: NDArray[np.float32],
-    pixels: Array,
-    depths: Array,
-    faces: NDArray[np.int32],
+    face_ids: NDArray[np.int32], pixels: Array, depths: Array, faces: NDArray[np.int32]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
     """Return, for each covered pixel, row, column and the shares of its face's corners.
 

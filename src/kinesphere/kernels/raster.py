@@ -63,10 +63,7 @@ def silhouette_kernel(
         lower = (pixels[c, 0] - x1) / (y2 - y1) if y2 > y1 else 0.0
         for row in range(int(first), int(last) + 1):
             one = x0 + (row - y0) * long
-            if row < y1 or y2 <= y1:
-                other = x0 + (row - y0) * upper
-            else:
-                other = x1 + (row - y1) * lower
+            other = x0 + (row - y0) * upper if row < y1 or y2 <= y1 else x1 + (row - y1) * lower
             left, right = min(one, other), max(one, other)
             if left <= width - 1 and right >= 0:
                 for col in range(max(0, math.ceil(left)), min(width - 1, math.floor(right)) + 1):
@@ -124,10 +121,7 @@ def visible_faces_kernel(
         lower = (x2 - x1) / (y2 - y1) if y2 > y1 else 0.0
         for row in range(int(first), int(last) + 1):
             one = x0 + (row - y0) * long
-            if row < y1 or y2 <= y1:
-                other = x0 + (row - y0) * upper
-            else:
-                other = x1 + (row - y1) * lower
+            other = x0 + (row - y0) * upper if row < y1 or y2 <= y1 else x1 + (row - y1) * lower
             left, right = min(one, other), max(one, other)
             if not (left <= width - 1 and right >= 0):
                 continue
