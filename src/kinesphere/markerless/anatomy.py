@@ -5,12 +5,12 @@ they are there to keep a search from impossible poses, not to describe a person.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinesphere.data import Array
+from kinesphere.data.surface import Surface
 from kinesphere.errors import BadModel
 from kinesphere.markerless.body import Body
 from kinesphere.markerless.chain import Chain, Link
@@ -40,28 +40,18 @@ PARENTS = {
 }
 """The human limbs known here, parents first; a clavicle may be missing."""
 
-UPPER = ("pelvis", "trunk", *(f"{s}_{b}" for s in ("left", "right") for b in ("upper_arm", "forearm", "hand")))
+UPPER = (
+    "pelvis",
+    "trunk",
+    *(f"{s}_{b}" for s in ("left", "right") for b in ("upper_arm", "forearm", "hand")),
+)
 """Limbs of the upper-body model of Rosenhahn et al. 2006, section 2: 6 + 1 + 2 · 7 parameters."""
 
 
-@dataclass(frozen=True, eq=False)
-class Rig:
-    """A surface with named limbs in the bind pose: y up, x ahead, z to the right, metres."""
+def full_body(surface: Surface) -> Body:
+    """Return the whole body: 42 degrees of freedom.
 
-    vertices: Array
-    """(n_vertices, 3)."""
-    faces: NDArray[np.int32]
-    limb_names: tuple[str, ...]
-    shares: Array
-    """(n_vertices, n_limbs)."""
-    centres: Array
-    """(n_limbs, 3) where each limb begins."""
-    ends: Array
-    """(n_limbs, 3) where it ends."""
-
-
-def full_body(rig: Rig) -> Body:
-    """Return the whole body: 42 degrees of freedom, 38 where the surface has no clavicles.
+    A surface without clavicles gets them as a share of its trunk.
 
     Raises
     ------
@@ -69,43 +59,40 @@ def full_body(rig: Rig) -> Body:
         If the surface lacks a limb.
     """
     needed = [name for name in PARENTS if not name.endswith("clavicle")]
-    if missing := [name for name in needed if name not in rig.limb_names]:
+    if missing := [name for name in needed if name not in surface.limbs]:
         raise BadModel(f"the surface has no limb called {', '.join(missing)}")
-    return _body(rig, [name for name in PARENTS if name in rig.limb_names])
+    return _body(surface, list(PARENTS))
 
 
-def upper_body(rig: Rig) -> Body:
+def upper_body(surface: Surface) -> Body:
     """Return the paper's model: six for the pose, one for the back, seven an arm.
 
     Head and clavicles are one with the trunk; legs are left away.
     """
-    legs = [i for i, n in enumerate(rig.limb_names) if n.endswith(("thigh", "shank", "foot"))]
-    on_legs = rig.shares[:, legs].sum(axis=1) > 0.5
-    faces = rig.faces[~on_legs[rig.faces].any(axis=1)]
+    legs = [i for i, n in enumerate(surface.limbs) if n.endswith(("thigh", "shank", "foot"))]
+    on_legs = surface.weights[:, legs].sum(axis=1) > 0.5
+    whole = _body(surface, UPPER, back_hinge=True)
+    faces = whole.faces[~on_legs[whole.faces].any(axis=1)]
     used = np.unique(faces)
-    new = np.full(len(rig.vertices), -1, dtype=np.int32)
+    new = np.full(len(whole.bind), -1, dtype=np.int32)
     new[used] = np.arange(len(used))
-    cut = Rig(
-        rig.vertices[used],
-        new[faces],
-        rig.limb_names,
-        rig.shares[used],
-        rig.centres,
-        rig.ends,
-    )
-    return _body(cut, UPPER, back_hinge=True)
+    return replace(whole, bind=whole.bind[used], faces=new[faces], shares=whole.shares[used])
 
 
-def _body(rig: Rig, names: Sequence[str], *, back_hinge: bool = False) -> Body:
-    at = {name: i for i, name in enumerate(rig.limb_names)}
-    shares = np.zeros((len(rig.vertices), len(names)))
+def _body(surface: Surface, names: Sequence[str], *, back_hinge: bool = False) -> Body:
+    at = {name: i for i, name in enumerate(surface.limbs)}
+    shares = np.zeros((len(surface.vertices), len(names)))
     for name, i in at.items():
         keeper = name
         while keeper not in names:  # what has no limb of its own moves with the next one inward
             keeper = PARENTS.get(keeper) or "pelvis"
-        shares[:, names.index(keeper)] += rig.shares[:, i]
-    places = {n: (rig.centres[at[n]], rig.ends[at[n]]) for n in names}
-    hands = {n: rig.vertices[rig.shares[:, at[n]] > 0.5] for n in names if n.endswith("hand")}
+        shares[:, names.index(keeper)] += surface.weights[:, i]
+    places = {n: (surface.joint_centres[i], surface.ends[i]) for n, i in at.items()}
+    if "left_clavicle" in names and "left_clavicle" not in at:
+        _split_clavicles(surface.vertices, names, shares, places)
+    hands = {
+        n: surface.vertices[surface.weights[:, at[n]] > 0.5] for n in names if n.endswith("hand")
+    }
     links = []
     for name in names:
         parent = PARENTS[name]
@@ -114,7 +101,35 @@ def _body(rig: Rig, names: Sequence[str], *, back_hinge: bool = False) -> Body:
         links.append(_link(name, parent, places, hands, back_hinge))
     house = tuple(n for n in names if not n.endswith("clavicle"))
     ends = np.array([places[n][1] for n in names])
-    return Body(Chain(tuple(links)), rig.vertices, rig.faces, shares, ends, house)
+    faces = surface.faces.astype(np.int32)
+    return Body(Chain(tuple(links)), surface.vertices, faces, shares, ends, house)
+
+
+def _split_clavicles(
+    vertices: Array,
+    names: Sequence[str],
+    shares: Array,
+    places: dict[str, tuple[Array, Array]],
+) -> None:
+    """Give each shoulder girdle its share of the trunk: all of it at the shoulder, none inward."""
+    trunk = names.index("trunk")
+    of_trunk = shares[:, trunk].copy()
+    top = places["trunk"][1]
+    for side in ("left", "right"):
+        shoulder = places[f"{side}_upper_arm"][0]
+        width = shoulder[2] - top[2]
+        centre = np.array([shoulder[0], shoulder[1] + 0.1 * abs(width), top[2] + 0.15 * width])
+        places[f"{side}_clavicle"] = (centre, shoulder)
+        outward = _smooth((vertices[:, 2] - top[2]) / width, 0.25, 0.9)
+        upward = _smooth((vertices[:, 1] - shoulder[1]) / abs(width), -1.2, -0.4)
+        given = of_trunk * outward * upward
+        shares[:, names.index(f"{side}_clavicle")] = given
+        shares[:, trunk] -= given
+
+
+def _smooth(x: Array, low: float, high: float) -> Array:
+    t = np.clip((x - low) / (high - low), 0.0, 1.0)
+    return np.asarray(t * t * (3 - 2 * t))
 
 
 def _link(

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array
 from kinesphere.errors import BadModel
+from kinesphere.geometry.rotations import rotation_log
+from kinesphere.geometry.twists import twist_exp
 from kinesphere.markerless.chain import BALL, HINGE, SLIDE, Chain
 from kinesphere.markerless.kernels.posing import skin_kernel, vertex_normals_kernel
 from kinesphere.markerless.pose import Pose, Posed, posed
-from kinesphere.geometry.rotations import rotation_log
-from kinesphere.geometry.twists import twist_exp
 
 INFLUENCES = 4
 """Limbs that move one vertex, at most; the heaviest are kept."""
@@ -44,7 +44,7 @@ class Body:
                 f"shares must be ({n}, {len(self.chain.links)}): vertices by limbs, "
                 f"got {self.shares.shape}"
             )
-        if self.faces.size and not (0 <= self.faces.min() and self.faces.max() < n):
+        if self.faces.size and not (self.faces.min() >= 0 and self.faces.max() < n):
             raise BadModel(f"faces name vertices beyond the {n} there are")
         if not np.allclose(self.shares.sum(axis=1), 1, atol=1e-3):
             raise BadModel("a vertex's shares do not sum to one: every vertex needs a limb")

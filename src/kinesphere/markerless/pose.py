@@ -98,9 +98,7 @@ def limited(chain: Chain, pose: Pose) -> Pose:
     balls = pose.balls.copy()
     for i, link in enumerate(chain.links):
         if link.kind == "ball" and (link.swing < np.pi or link.twist < np.pi):
-            balls[i] = _limited_ball(
-                balls[i], link.long_axis, link.towards, link.swing, link.twist
-            )
+            balls[i] = _limited_ball(balls[i], link.long_axis, link.towards, link.swing, link.twist)
     return replace(pose, balls=balls, angles=np.clip(pose.angles, *chain.limits))
 
 

@@ -1,0 +1,180 @@
+"""What an image says of where the person is: by the colours of limbs, or by a mask."""
+
+from functools import cache
+from typing import Protocol
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array
+from kinesphere.markerless.kernels.colour import (
+    blurred_kernel,
+    colour_samples_kernel,
+    count_far_kernel,
+    count_lines_kernel,
+    mask_score_kernel,
+    region_score_kernel,
+)
+from kinesphere.markerless.kernels.lines import SAMPLES, mask_samples_kernel
+from kinesphere.markerless.rim import Parts, Rim
+
+SIDE = 16
+"""Bins along each of lightness, a and b."""
+_AB = 64.0  # a and b beyond this share the last bin: nothing in a room is more colourful
+STRIDE = 3
+"""px; of the grid on which poses are compared."""
+MOST = 3.0
+"""nats a pixel may say."""
+
+
+class Evidence(Protocol):
+    """What one camera's image says."""
+
+    def look(self, picture: NDArray[np.uint8]) -> None:
+        """Take in a new image of the view."""
+
+    def samples(self, rim: Rim, use: NDArray[np.int8], scale: int) -> Array:
+        """Return how likely samples across the rim are the person's, (n, SAMPLES)."""
+
+    def learn(self, rim: Rim, parts: Parts, rate: float) -> None:
+        """Take the present pose as true, as far as ``rate`` (0 to 1) goes."""
+
+    def score(self, parts: Parts, scores: Array, counts: Array) -> None:
+        """Add how much a pose explains, (n_limbs,) in nats, and by how many pixels."""
+
+
+@cache
+def lab_bins() -> NDArray[np.uint16]:
+    """Return the histogram bin of five bits each of red, green and blue, (32768,)."""
+    steps = (np.arange(32) * 8 + 4).astype(np.uint8)
+    colours = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1)
+    lab = cv2.cvtColor(colours.reshape(1, -1, 3).astype(np.float32) / 255, cv2.COLOR_RGB2LAB)[0]
+    lightness = np.clip(lab[:, 0] / 100 * SIDE, 0, SIDE - 1).astype(int)
+    ab = np.clip((lab[:, 1:] + _AB) / (2 * _AB) * SIDE, 0, SIDE - 1).astype(int)
+    return np.asarray((lightness * SIDE + ab[:, 0]) * SIDE + ab[:, 1], dtype=np.uint16)
+
+
+def pyramid(picture: NDArray[np.uint8]) -> dict[int, NDArray[np.uint8]]:
+    """Return an image at one, a half and a quarter of its size."""
+    levels = {1: picture}
+    for scale in (2, 4):
+        size = (max(2, picture.shape[1] // scale), max(2, picture.shape[0] // scale))
+        small = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+        levels[scale] = np.asarray(small, dtype=np.uint8)
+    return levels
+
+
+class Masks:
+    """A mask, or an image of probabilities from 0 to 255, is what there is."""
+
+    def __init__(self) -> None:
+        self._levels: dict[int, NDArray[np.uint8]] = {}
+
+    def look(self, picture: NDArray[np.uint8]) -> None:
+        """Take in a new mask."""
+        self._levels = pyramid(picture)
+
+    def samples(self, rim: Rim, use: NDArray[np.int8], scale: int) -> Array:
+        """Return how likely samples across the rim are the person's."""
+        use = np.where(rim.parts[:, 1:] >= 0, np.int8(0), use)  # a mask knows no inner contours
+        out = np.empty((len(use), SAMPLES))
+        level = self._levels[scale]
+        mask_samples_kernel(rim.pixels, rim.normals, use, level, float(scale), float(scale), out)
+        return out
+
+    def learn(self, rim: Rim, parts: Parts, rate: float) -> None:
+        """Do nothing: a mask is given."""
+
+    def score(self, parts: Parts, scores: Array, counts: Array) -> None:
+        """Add how much a pose explains."""
+        mask_score_kernel(parts.limbs, self._levels[1], STRIDE, MOST, scores, counts)
+
+
+class Colours:
+    """Colours of limbs and of the background beside them, learnt from the poses found."""
+
+    def __init__(
+        self, groups: NDArray[np.int32], near_limbs: NDArray[np.bool_], local: float
+    ) -> None:
+        n = int(groups.max()) + 1
+        self._groups, self._near_limbs, self._local = groups, near_limbs, local
+        self._counts = [
+            np.zeros((n, SIDE**3), dtype=np.float32),
+            np.zeros((n, SIDE**3), dtype=np.float32),
+            np.zeros((1, SIDE**3), dtype=np.float32),
+        ]
+        self._densities = [np.zeros_like(counts) for counts in self._counts]
+        self._levels: dict[int, NDArray[np.uint8]] = {}
+
+    def look(self, picture: NDArray[np.uint8]) -> None:
+        """Take in a new image."""
+        self._levels = pyramid(picture)
+
+    def samples(self, rim: Rim, use: NDArray[np.int8], scale: int) -> Array:
+        """Return how likely samples across the rim are the person's."""
+        limbs, near, far = self._densities
+        out = np.empty((len(use), SAMPLES))
+        colour_samples_kernel(
+            rim.pixels,
+            rim.normals,
+            rim.parts,
+            use,
+            self._levels[scale],
+            float(scale),
+            float(scale),
+            lab_bins(),
+            self._groups,
+            limbs,
+            near,
+            far[0],
+            self._local,
+            out,
+        )
+        return out
+
+    def learn(self, rim: Rim, parts: Parts, rate: float) -> None:
+        """Mix the colours of the present pose into those known."""
+        fresh = [np.zeros_like(counts) for counts in self._counts]
+        image, bins = self._levels[1], lab_bins()
+        count_lines_kernel(
+            rim.pixels,
+            rim.normals,
+            rim.parts,
+            parts.limbs,
+            self._near_limbs,
+            image,
+            bins,
+            self._groups,
+            2,
+            14,
+            20,
+            fresh[0],
+            fresh[1],
+        )
+        count_far_kernel(parts.limbs, image, bins, 4, fresh[2][0])
+        for known, new, density in zip(self._counts, fresh, self._densities, strict=True):
+            total = new.sum(axis=1, keepdims=True)
+            seen = total[:, 0] > 0
+            empty = seen & (known.sum(axis=1) == 0)
+            share = np.where(empty, 1.0, rate * seen)[:, None].astype(np.float32)
+            known *= 1 - share
+            known += share * new / np.maximum(total, 1)
+            for row, out in zip(known, density, strict=True):
+                blurred_kernel(row, SIDE, out)
+
+    def score(self, parts: Parts, scores: Array, counts: Array) -> None:
+        """Add how much a pose explains."""
+        limbs, _, far = self._densities
+        region_score_kernel(
+            parts.limbs,
+            self._levels[1],
+            lab_bins(),
+            self._groups,
+            limbs,
+            far[0],
+            STRIDE,
+            MOST,
+            scores,
+            counts,
+        )

@@ -1,0 +1,74 @@
+"""Every choice of the tracker, with its unit, range and source."""
+
+from dataclasses import dataclass
+
+from kinesphere.data import check_settings, setting
+
+_TRIED = "tried on rendered and real footage"
+_PAPER = "Rosenhahn et al. 2006"
+
+
+@dataclass(frozen=True)
+class TrackSettings:
+    """Settings of ``track``."""
+
+    method: str = setting(
+        "region",
+        "how images move the model: colour statistics along lines across its rim; the paper's level "
+        "set and contour; the paper's level set drawn towards the model, for clutter",
+        choices=("region", "level-set", "coupled"),
+        source=f"region: Stoiber et al. 2022, doi:10.1007/s11263-022-01579-8; {_PAPER}, 2.1, 3.1",
+    )
+    equations: str = setting(
+        "image",
+        "what contour points are brought to: the edge in the image, or the line of sight in space",
+        choices=("image", "plucker"),
+        source=f"{_PAPER}, equations 10 to 12",
+    )
+    largest: int = setting(960, "longer side of the images worked on", unit="px", low=64, high=4096)
+    cell: int = setting(
+        6, "one point of the rim is taken in a square of this side", unit="px", low=1, high=64
+    )
+    coarse: int = setting(3, "iterations at a quarter of the size", low=0, high=50, source=_TRIED)
+    middle: int = setting(3, "iterations at half the size", low=0, high=50, source=_TRIED)
+    fine: int = setting(2, "iterations at full size", low=0, high=50, source=_TRIED)
+    trust: float = setting(
+        0.43,
+        "half the height of the step expected at the edge: below 0.5, as pixels may err",
+        low=0.05,
+        high=0.49,
+        source="Stoiber et al. 2022",
+    )
+    steepness: float = setting(
+        1.0, "samples over which that step rises", low=0.1, high=5.0, source=_TRIED
+    )
+    local: float = setting(
+        0.7, "share of the surroundings in the background's colours", low=0.0, high=1.0,
+        source=_TRIED,
+    )  # fmt: skip
+    learning: float = setting(
+        0.05, "how much of the colours is renewed in each frame", low=0.0, high=1.0, source=_TRIED
+    )
+    data_weight: float = setting(
+        0.05, "weight of a line, as neighbouring lines say the same", low=1e-4, high=1.0,
+        source=_TRIED,
+    )  # fmt: skip
+    turn_spread: float = setting(
+        12.0, "how far a joint may be from its prediction", unit="deg", low=0.1, high=180.0,
+        source=_TRIED,
+    )  # fmt: skip
+    shift_spread: float = setting(
+        40.0, "how far the root may be from its prediction", unit="mm", low=0.1, high=1e4,
+        source=_TRIED,
+    )  # fmt: skip
+    rest_spread: float = setting(
+        4.0, "how far a joint may be from rest, in multiples of what is usual for it", low=0.1,
+        high=1e3, source=_TRIED,
+    )  # fmt: skip
+    velocity: float = setting(
+        0.8, "share of the last step that the prediction goes on by", low=0.0, high=1.0,
+        source=_TRIED,
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        check_settings(self)
