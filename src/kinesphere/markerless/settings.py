@@ -69,6 +69,45 @@ class TrackSettings:
         0.8, "share of the last step that the prediction goes on by", low=0.0, high=1.0,
         source=_TRIED,
     )  # fmt: skip
+    features: str = setting(
+        "colour",
+        "what the level set's regions are told apart by",
+        choices=("grey", "colour", "texture"),
+        source=f"{_PAPER}, 2.1",
+    )
+    blur: float = setting(
+        3.0, "K_σ that smooths the level set's histograms of 256 values", low=0.5, high=50.0,
+        source=f"{_PAPER}, 2.1, which gives no value; {_TRIED}",
+    )  # fmt: skip
+    length: float = setting(
+        1.0, "ν, weight of the contour's length", low=0.0, high=100.0,
+        source=f"{_PAPER}, equation 2, which gives no value; {_TRIED}",
+    )  # fmt: skip
+    shape: float = setting(
+        0.03, "λ, weight of staying near the projected model", unit="1/px", low=0.0, high=1.0,
+        source=f"{_PAPER}, equation 3, which gives no value; {_TRIED}",
+    )  # fmt: skip
+    shape_term: str = setting(
+        "outside",
+        "the shape's term of equation 4: outside H'(…), as the energy's derivative is, or inside "
+        "it, as printed",
+        choices=("outside", "inside"),
+        source=_PAPER,
+    )
+    rounds: int = setting(4, "times the densities are estimated anew", low=1, high=100)
+    evolution: int = setting(6, "steps of the contour between two estimates", low=1, high=100)
+    margin: int = setting(
+        40, "how far around the model the level set looks", unit="px", low=4, high=1000
+    )
+    alternations: int = setting(
+        3, "times the coupled method goes from contour to pose", low=1, high=20
+    )
+    contour_iterations: int = setting(
+        9, "Gauss-Newton steps of the pose on the contours", low=1, high=100
+    )
+    radius: float = setting(
+        30.0, "how far a contour point may be from the rim at first", unit="px", low=1.0, high=500.0
+    )
 
     def __post_init__(self) -> None:
         check_settings(self)

@@ -1,12 +1,13 @@
 """From frame to frame: predict, fit, judge each limb, learn the colours."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array
+from kinesphere.markerless.contour_fit import ContourFitter
 from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.pose import Pose
 from kinesphere.markerless.prediction import expectation, predicted, rest
@@ -31,7 +32,8 @@ class Tracking:
     fitter: Fitter
     last: Pose
     before: Pose | None = None
-    quality: list[float] = field(default_factory=list)
+    contours: ContourFitter | None = None
+    """Finds the poses in place of the fitter, for the methods that go by contours."""
 
     def begin(self, pictures: Sequence[NDArray[np.uint8]]) -> Found:
         """Take the present pose as that of these images, (h, w, 3) or masks, one an eye."""
@@ -44,13 +46,17 @@ class Tracking:
         chain, settings = self.fitter.body.chain, self.fitter.settings
         guess = predicted(chain, self.before, self.last, settings.velocity)
         priors = (expectation(chain, guess, settings), rest(chain, settings, guess))
-        pose = self.fitter.fit(guess, priors)
+        pose = (self.contours or self.fitter).fit(guess, priors)
         self.before, self.last = self.last, pose
         return self._judged(pose, learn=settings.learning)
 
     def _look(self, pictures: Sequence[NDArray[np.uint8]]) -> None:
-        for eye, picture in zip(self.fitter.eyes, pictures, strict=True):
-            eye.evidence.look(eye.canvas.view.image(picture))
+        eyes = self.fitter.eyes
+        views = [e.canvas.view.image(p) for e, p in zip(eyes, pictures, strict=True)]
+        for eye, picture in zip(eyes, views, strict=True):
+            eye.evidence.look(picture)
+        if self.contours is not None:
+            self.contours.look(views)
 
     def _judged(self, pose: Pose, learn: float) -> Found:
         n = len(self.fitter.body.chain.links)
