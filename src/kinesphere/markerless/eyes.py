@@ -51,3 +51,11 @@ def fitter_for(
         for camera in cameras
     )
     return Fitter(body, eyes, settings, near)
+
+
+def with_body(fitter: Fitter, body: Body) -> Fitter:
+    """Return the fitter for another body of the same limbs, with what its eyes have learnt."""
+    eyes = tuple(
+        Eye(Canvas(eye.canvas.view, body, eye.canvas.cell), eye.evidence) for eye in fitter.eyes
+    )
+    return Fitter(body, eyes, fitter.settings, fitter.near)
