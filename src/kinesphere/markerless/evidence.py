@@ -55,25 +55,34 @@ def lab_bins() -> NDArray[np.uint16]:
     return np.asarray((lightness * SIDE + ab[:, 0]) * SIDE + ab[:, 1], dtype=np.uint16)
 
 
-def pyramid(picture: NDArray[np.uint8]) -> dict[int, NDArray[np.uint8]]:
-    """Return an image at one, a half and a quarter of its size."""
-    levels = {1: picture}
-    for scale in (2, 4):
-        size = (max(2, picture.shape[1] // scale), max(2, picture.shape[0] // scale))
-        small = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
-        levels[scale] = np.asarray(small, dtype=np.uint8)
-    return levels
+class Levels:
+    """An image at its own and, as they are asked for, at smaller sizes."""
+
+    def __init__(self, picture: NDArray[np.uint8]) -> None:
+        self._levels = {1: picture}
+
+    def __getitem__(self, scale: int) -> NDArray[np.uint8]:
+        """Return the image ``scale`` times smaller, averaged."""
+        if scale not in self._levels:
+            full = self._levels[1]
+            size = (max(2, full.shape[1] // scale), max(2, full.shape[0] // scale))
+            small = cv2.resize(full, size, interpolation=cv2.INTER_AREA)
+            self._levels[scale] = np.asarray(small, dtype=np.uint8)
+        return self._levels[scale]
+
+
+_NOTHING = np.zeros((2, 2), dtype=np.uint8)
 
 
 class Masks:
     """A mask, or an image of probabilities from 0 to 255, is what there is."""
 
     def __init__(self) -> None:
-        self._levels: dict[int, NDArray[np.uint8]] = {}
+        self._levels = Levels(_NOTHING)
 
     def look(self, picture: NDArray[np.uint8]) -> None:
         """Take in a new mask."""
-        self._levels = pyramid(picture)
+        self._levels = Levels(picture)
 
     def samples(self, rim: Rim, use: NDArray[np.int8], scale: int) -> Array:
         """Return how likely samples across the rim are the person's."""
@@ -105,11 +114,11 @@ class Colours:
             np.zeros((1, SIDE**3), dtype=np.float32),
         ]
         self._densities = [np.zeros_like(counts) for counts in self._counts]
-        self._levels: dict[int, NDArray[np.uint8]] = {}
+        self._levels = Levels(_NOTHING)
 
     def look(self, picture: NDArray[np.uint8]) -> None:
         """Take in a new image."""
-        self._levels = pyramid(picture)
+        self._levels = Levels(picture)
 
     def samples(self, rim: Rim, use: NDArray[np.int8], scale: int) -> Array:
         """Return how likely samples across the rim are the person's."""
