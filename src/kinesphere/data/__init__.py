@@ -4,6 +4,7 @@ from kinesphere.data.arrays import Array as Array
 from kinesphere.data.arrays import Codes as Codes
 from kinesphere.data.arrays import Mask as Mask
 from kinesphere.data.arrays import given_away as given_away
+from kinesphere.data.body import bundled_body as bundled_body
 from kinesphere.data.camera import Camera as Camera
 from kinesphere.data.directions import DIRECTIONS as DIRECTIONS
 from kinesphere.data.directions import UpAxis as UpAxis
@@ -45,3 +46,4 @@ from kinesphere.data.skeleton import Limb as Limb
 from kinesphere.data.skeleton import Observability as Observability
 from kinesphere.data.skeleton import Skeleton as Skeleton
 from kinesphere.data.solution import Solution as Solution
+from kinesphere.data.surface import Surface as Surface
