@@ -17,6 +17,10 @@ class UnwritableFile(KinesphereError):
     """A place cannot be written to, or holds what must not be replaced."""
 
 
+class MissingExtra(KinesphereError):
+    """A package that only some commands need is not installed."""
+
+
 class BadRecording(KinesphereError):
     """A recording cannot be used as asked: no frames, no rate, labels that clash."""
 

@@ -26,6 +26,8 @@ class Frame:
     """One a camera; None where it has none at this instant."""
     masks: tuple[Mask | None, ...]
     """(height, width) True on the person, one a camera; None where nobody gave one."""
+    references: tuple[Mask | None, ...] = ()
+    """The same, to be compared with only; empty where there are none at all."""
 
 
 class Footage(Protocol):

@@ -1,0 +1,3 @@
+"""Scenes of several cameras, as ``SCENE.toml`` describes them."""
+
+from kinesphere.io.scene.read import read_scene as read_scene
