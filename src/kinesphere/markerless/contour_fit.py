@@ -10,9 +10,9 @@ from kinesphere.geometry.twists import incidence
 from kinesphere.markerless.fit import Eye, Fitter
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.kernels.levelset import contour_kernel, vote_kernel
-from kinesphere.markerless.levelset import Silhouette, around, cropped, from_mask, segment
+from kinesphere.markerless.levelset import Silhouette, cropped, from_mask, segment
 from kinesphere.markerless.pose import Pose, Posed, posed
-from kinesphere.markerless.rim import Rim, derivatives, image_directions
+from kinesphere.markerless.rim import Rim, around, derivatives, image_directions
 from kinesphere.markerless.solver import Normals, Prior, solve_step
 from kinesphere.markerless.views import View
 
@@ -39,11 +39,11 @@ class ContourFitter:
 
     fitter: Fitter
     masks: bool
-    pictures: list[NDArray[np.uint8]] = field(default_factory=list)
+    pictures: list[NDArray[np.uint8] | None] = field(default_factory=list)
     silhouettes: list[Silhouette | None] = field(default_factory=list)
     """As last found."""
 
-    def look(self, pictures: list[NDArray[np.uint8]]) -> None:
+    def look(self, pictures: list[NDArray[np.uint8] | None]) -> None:
         """Take in new images of the views."""
         self.pictures[:] = pictures
 
@@ -68,18 +68,18 @@ class ContourFitter:
 
     def _contours(self, pose: Pose, shape: float) -> list[Contour | None]:
         contours: list[Contour | None] = []
-        for i, (parts, _) in enumerate(self.fitter.look_at(pose)):
-            model = parts.limbs != NOWHERE
-            if self.masks:
-                box = around(self.pictures[i] > 127, 4)
-                found = None if box is None else cropped(from_mask(self.pictures[i]), box)
+        points = self.fitter.body.skinned(posed(self.fitter.body.chain, pose))
+        for i, (eye, picture) in enumerate(zip(self.fitter.eyes, self.pictures, strict=True)):
+            model = eye.canvas.draw(points).limbs != NOWHERE
+            if picture is None:
+                found = None
+            elif self.masks:
+                box = around(picture > 127, 4)
+                found = None if box is None else cropped(from_mask(picture), box)
             else:
-                found = segment(
-                    self.pictures[i], model, self.fitter.settings, self.silhouettes[i], shape
-                )
+                found = segment(picture, model, self.fitter.settings, self.silhouettes[i], shape)
             self.silhouettes[i] = found
-            view = self.fitter.eyes[i].canvas.view
-            contours.append(None if found is None else _contour(found, view, 3))
+            contours.append(None if found is None else _contour(found, eye.canvas.view, 3))
         return contours
 
     def _step(
@@ -153,7 +153,7 @@ def _contour(silhouette: Silhouette, view: View, spacing: int) -> Contour:
     taken = np.zeros((h // spacing + 1, w // spacing + 1), dtype=bool)
     points, normals = np.empty((taken.size, 2)), np.empty((taken.size, 2))
     n = contour_kernel(silhouette.phi, spacing, points, normals, taken)
-    points = points[:n] + [silhouette.left, silhouette.top]
+    points = points[:n] + np.array([silhouette.left, silhouette.top])
     # where the person leaves the image the silhouette ends, but not the person
     inside = ((points > 4) & (points < [view.width - 5, view.height - 5])).all(axis=1)
     return Contour(points[inside], normals[:n][inside])

@@ -7,8 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array
+from kinesphere.data import Array, Mask
 from kinesphere.markerless.kernels.colour import (
+    FLOOR,
     blurred_kernel,
     colour_samples_kernel,
     count_far_kernel,
@@ -17,7 +18,7 @@ from kinesphere.markerless.kernels.colour import (
     region_score_kernel,
 )
 from kinesphere.markerless.kernels.lines import SAMPLES, mask_samples_kernel
-from kinesphere.markerless.rim import Parts, Rim
+from kinesphere.markerless.rim import Parts, Rim, around
 
 SIDE = 16
 """Bins along each of lightness, a and b."""
@@ -26,13 +27,19 @@ STRIDE = 3
 """px; of the grid on which poses are compared."""
 MOST = 3.0
 """nats a pixel may say."""
+_MARGIN = 20
+"""px around the model in which a person is looked for."""
 
 
 class Evidence(Protocol):
     """What one camera's image says."""
 
-    def look(self, picture: NDArray[np.uint8]) -> None:
-        """Take in a new image of the view."""
+    @property
+    def seeing(self) -> bool:
+        """Whether there is an image at this instant."""
+
+    def look(self, picture: NDArray[np.uint8] | None) -> None:
+        """Take in a new image of the view, or that there is none."""
 
     def samples(self, rim: Rim, use: NDArray[np.int8], scale: int) -> Array:
         """Return how likely samples across the rim are the person's, (n, SAMPLES)."""
@@ -42,6 +49,9 @@ class Evidence(Protocol):
 
     def score(self, parts: Parts, scores: Array, counts: Array) -> None:
         """Add how much a pose explains, (n_limbs,) in nats, and by how many pixels."""
+
+    def person(self, model: Mask) -> tuple[Mask, Mask]:
+        """Return, on a grid of pixels around the model, what it covers and where a person is."""
 
 
 @cache
@@ -79,10 +89,17 @@ class Masks:
 
     def __init__(self) -> None:
         self._levels = Levels(_NOTHING)
+        self._seeing = False
 
-    def look(self, picture: NDArray[np.uint8]) -> None:
-        """Take in a new mask."""
-        self._levels = Levels(picture)
+    @property
+    def seeing(self) -> bool:
+        """Whether there is a mask at this instant."""
+        return self._seeing
+
+    def look(self, picture: NDArray[np.uint8] | None) -> None:
+        """Take in a new mask, or that there is none."""
+        self._seeing = picture is not None
+        self._levels = Levels(_NOTHING if picture is None else picture)
 
     def samples(self, rim: Rim, use: NDArray[np.int8], scale: int) -> Array:
         """Return how likely samples across the rim are the person's."""
@@ -98,6 +115,10 @@ class Masks:
     def score(self, parts: Parts, scores: Array, counts: Array) -> None:
         """Add how much a pose explains."""
         mask_score_kernel(parts.limbs, self._levels[1], STRIDE, MOST, scores, counts)
+
+    def person(self, model: Mask) -> tuple[Mask, Mask]:
+        """Return what the model covers, and the mask."""
+        return model, np.asarray(self._levels[1] > 127)
 
 
 class Colours:
@@ -115,10 +136,17 @@ class Colours:
         ]
         self._densities = [np.zeros_like(counts) for counts in self._counts]
         self._levels = Levels(_NOTHING)
+        self._seeing = False
 
-    def look(self, picture: NDArray[np.uint8]) -> None:
-        """Take in a new image."""
-        self._levels = Levels(picture)
+    @property
+    def seeing(self) -> bool:
+        """Whether there is an image at this instant."""
+        return self._seeing
+
+    def look(self, picture: NDArray[np.uint8] | None) -> None:
+        """Take in a new image, or that there is none."""
+        self._seeing = picture is not None
+        self._levels = Levels(_NOTHING if picture is None else picture)
 
     def samples(self, rim: Rim, use: NDArray[np.int8], scale: int) -> Array:
         """Return how likely samples across the rim are the person's."""
@@ -187,3 +215,23 @@ class Colours:
             scores,
             counts,
         )
+
+    def person(self, model: Mask) -> tuple[Mask, Mask]:
+        """Return, on a grid of pixels around the model, what it covers and where a person is.
+
+        By the colours of all limbs together against those of the background; smoothed, as single
+        pixels err. In clutter that is a rough guess.
+        """
+        box = around(model, _MARGIN)
+        if box is None:
+            return model, np.zeros_like(model)
+        rows, cols = box
+        grid = (slice(rows.start, rows.stop, STRIDE), slice(cols.start, cols.stop, STRIDE))
+        colours = self._levels[1][grid].astype(np.intp) >> 3
+        bins = lab_bins()[(colours[..., 0] << 10) + (colours[..., 1] << 5) + colours[..., 2]]
+        limbs, near, far = self._densities
+        counts, beside = (c.sum(axis=1, keepdims=True) > 0 for c in self._counts[:2])
+        person = (limbs * counts).sum(axis=0) / max(1, counts.sum())
+        ground = 0.5 * (near * beside).sum(axis=0) / max(1, beside.sum()) + 0.5 * far[0]
+        ratio = np.log((person + FLOOR) / (ground + FLOOR)).astype(np.float32)
+        return model[grid], np.asarray(cv2.blur(ratio[bins], (3, 3)) > 0)

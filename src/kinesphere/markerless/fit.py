@@ -49,6 +49,11 @@ class Fitter:
     settings: TrackSettings
     near: NDArray[np.bool_]
 
+    @property
+    def open_eyes(self) -> tuple[Eye, ...]:
+        """The eyes that have an image at this instant."""
+        return tuple(eye for eye in self.eyes if eye.evidence.seeing)
+
     def fit(
         self,
         pose: Pose,
@@ -71,9 +76,9 @@ class Fitter:
                 points = self.body.skinned(at)
                 normals = self.body.normals(points)
                 if i == 0:
-                    seen = [eye.canvas.draw(points) for eye in self.eyes]
+                    seen = [eye.canvas.draw(points) for eye in self.open_eyes]
                 equations = Normals.empty(self.body.chain.n_dofs)
-                for eye, parts in zip(self.eyes, seen, strict=True):
+                for eye, parts in zip(self.open_eyes, seen, strict=True):
                     rim = eye.canvas.rim(points, normals, parts)
                     if len(rim.shares) == 0:
                         continue
@@ -108,11 +113,11 @@ class Fitter:
         return offset, variance, agreement
 
     def look_at(self, pose: Pose) -> list[tuple[Parts, Rim]]:
-        """Return what every eye would see of a pose."""
+        """Return what every eye that is open would see of a pose."""
         points = self.body.skinned(posed(self.body.chain, pose))
         normals = self.body.normals(points)
         seen = []
-        for eye in self.eyes:
+        for eye in self.open_eyes:
             parts = eye.canvas.draw(points)
             seen.append((parts, eye.canvas.rim(points, normals, parts)))
         return seen
@@ -126,7 +131,7 @@ class Fitter:
         scores = np.zeros(len(self.body.chain.links))
         counts = np.zeros(len(scores))
         points = self.body.skinned(posed(self.body.chain, pose))
-        for eye in self.eyes:
+        for eye in self.open_eyes:
             eye.evidence.score(eye.canvas.draw(points), scores, counts)
         return scores, counts
 

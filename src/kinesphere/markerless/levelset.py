@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array
 from kinesphere.markerless.kernels.levelset import evolve_kernel, region_counts_kernel
+from kinesphere.markerless.rim import around
 from kinesphere.markerless.settings import TrackSettings
 
 Phi = NDArray[np.float32]
@@ -39,18 +40,6 @@ def signed_distance(mask: NDArray[np.uint8]) -> Phi:
     # an edge lies between two pixels, half a pixel from either
     phi = np.where(mask > 0, inside - 0.5, 0.5 - outside)
     return np.clip(phi, -_FAR, _FAR).astype(np.float32)
-
-
-def around(mask: NDArray[np.bool_], margin: int) -> tuple[slice, slice] | None:
-    """Return rows and columns that hold a mask and a margin; None for an empty mask."""
-    rows, cols = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    if len(rows) == 0:
-        return None
-    h, w = mask.shape
-    return (
-        slice(max(0, rows[0] - margin), min(h, rows[-1] + margin + 1)),
-        slice(max(0, cols[0] - margin), min(w, cols[-1] + margin + 1)),
-    )
 
 
 def features_of(picture: NDArray[np.uint8], kind: str) -> NDArray[np.uint8]:

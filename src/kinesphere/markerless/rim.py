@@ -176,3 +176,15 @@ def image_directions(view: View, points: Array, normals: Array) -> Array:
     depth = seen[:, 2]
     in_camera = np.stack([x, y, -(x * seen[:, 0] + y * seen[:, 1]) / depth], axis=1)
     return np.asarray((in_camera / depth[:, None]) @ view.rotation)
+
+
+def around(mask: NDArray[np.bool_], margin: int) -> tuple[slice, slice] | None:
+    """Return rows and columns that hold a mask and a margin; None for an empty mask."""
+    rows, cols = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    if len(rows) == 0:
+        return None
+    h, w = mask.shape
+    return (
+        slice(max(0, rows[0] - margin), min(h, rows[-1] + margin + 1)),
+        slice(max(0, cols[0] - margin), min(w, cols[-1] + margin + 1)),
+    )

@@ -69,6 +69,26 @@ class TrackSettings:
         0.8, "share of the last step that the prediction goes on by", low=0.0, high=1.0,
         source=_TRIED,
     )  # fmt: skip
+    shape_frames: int = setting(
+        60, "frames tracked to learn the person's proportions from", low=1, high=10000
+    )
+    shape_instants: int = setting(
+        10, "of these, how many the proportions are fitted to", low=1, high=100
+    )
+    shape_rounds: int = setting(
+        2, "times that is done, each with the proportions found before", low=0, high=10
+    )
+    recover: bool = setting(
+        True, "whether arms and legs held lost are looked for elsewhere", source=_PAPER
+    )
+    least_support: float = setting(
+        0.6, "a limb is held lost if less of the evidence along its rim speaks for it", low=0.0,
+        high=1.0, source=_TRIED,
+    )  # fmt: skip
+    least_gain: float = setting(
+        0.0, "a limb is held lost if its pixels are by so much likelier it than background",
+        unit="nats", low=-10.0, high=10.0, source=_TRIED,
+    )  # fmt: skip
     features: str = setting(
         "colour",
         "what the level set's regions are told apart by",

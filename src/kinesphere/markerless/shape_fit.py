@@ -27,7 +27,7 @@ _LONGEST = 0.05
 class Instant:
     """Images of one instant, at the views' sizes, and the pose found there."""
 
-    pictures: tuple[NDArray[np.uint8], ...]
+    pictures: tuple[NDArray[np.uint8] | None, ...]
     pose: Pose
 
 
@@ -98,7 +98,7 @@ def _equations(
     fitter: Fitter,
     varied: Sequence[Body],
     pose: Pose,
-    pictures: Sequence[NDArray[np.uint8]],
+    pictures: Sequence[NDArray[np.uint8] | None],
     scale: int,
 ) -> Normals:
     """Return the normal equations of one instant: its pose first, then the factors."""
@@ -112,6 +112,8 @@ def _equations(
     s = fitter.settings
     for eye, picture in zip(fitter.eyes, pictures, strict=True):
         eye.evidence.look(picture)
+        if picture is None:
+            continue
         parts = eye.canvas.draw(points)
         rim = eye.canvas.rim(points, normals, parts)
         if len(rim.shares) == 0:

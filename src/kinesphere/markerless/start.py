@@ -15,7 +15,7 @@ from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.hull import visual_hull
 from kinesphere.markerless.hypotheses import arm_poses, facing, leg_poses, standing
 from kinesphere.markerless.kernels.contour import NOWHERE
-from kinesphere.markerless.pose import Pose
+from kinesphere.markerless.pose import Pose, posed
 from kinesphere.markerless.prediction import rest
 from kinesphere.markerless.shape import FACTORS, shaped
 from kinesphere.markerless.shape_fit import Instant, fit_shape
@@ -40,9 +40,10 @@ class Start:
 def overlaps(fitter: Fitter, pose: Pose, masks: Sequence[NDArray[np.uint8] | None]) -> Array:
     """Return intersection over union of model and silhouettes, (n_cameras,)."""
     out = np.full(len(masks), np.nan)
-    for i, (mask, (parts, _)) in enumerate(zip(masks, fitter.look_at(pose), strict=True)):
+    points = fitter.body.skinned(posed(fitter.body.chain, pose))
+    for i, (eye, mask) in enumerate(zip(fitter.eyes, masks, strict=True)):
         if mask is not None:
-            model, person = parts.limbs != NOWHERE, mask > 127
+            model, person = eye.canvas.draw(points).limbs != NOWHERE, mask > 127
             union = float((model | person).sum())
             out[i] = (model & person).sum() / union if union else np.nan
     return out
@@ -83,8 +84,7 @@ def find_start(
     views = [eye.canvas.view for eye in fitter.eyes]
     hull = visual_hull(views, masks)
     for eye, mask in zip(fitter.eyes, masks, strict=True):
-        blank = np.zeros((eye.canvas.view.height, eye.canvas.view.width), dtype=np.uint8)
-        eye.evidence.look(blank if mask is None else mask)
+        eye.evidence.look(mask)
     log_size = _log_size(hull, fitter.body)
     at = np.array([hull[:, 0].mean(), 0.0, hull[:, 2].mean()]) if position is None else position
     tried: list[tuple[float, Pose, Array]] = []
@@ -150,12 +150,7 @@ def _with_shape(
     candidates: Sequence[tuple[float, Pose, Array]],
 ) -> tuple[float, Pose, Array]:
     """Return the best candidate after its proportions have been fitted to the one instant."""
-    pictures = tuple(
-        np.zeros((eye.canvas.view.height, eye.canvas.view.width), dtype=np.uint8)
-        if mask is None
-        else mask
-        for eye, mask in zip(fitter.eyes, masks, strict=True)
-    )
+    pictures = tuple(masks)
     done = []
     for _, start, start_logs in candidates:
         pose, logs = start, start_logs
