@@ -1,28 +1,34 @@
 """Do the cameras agree? What one sees at the person's rim, the others must see somewhere.
 
-A line of sight through a silhouette passes through the person, so somewhere along it is a point that
-lies in every other silhouette as well: the visual hull touches every line. The distance, in pixels,
-by which no such point exists measures calibration and synchronisation together, without a model
-(visual hulls: Laurentini 1994, doi:10.1109/34.273735).
+A line of sight through a silhouette passes through the person, so somewhere along it is a point
+that lies in every other silhouette as well: the visual hull touches every line. The distance, in
+pixels, by which no such point exists measures calibration and synchronisation together, without a
+model (visual hulls: Laurentini 1994, doi:10.1109/34.273735).
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Camera, Mask
+from kinesphere.markerless.kernels.sight import hold_against_kernel, least_kernel
 
-RAYS = 160
+RAYS = 128
 """Lines of sight taken along one silhouette's rim."""
-_STEPS = 96
+_STEPS = 160
 """Points along each of them."""
-_REACH = 1.7
+_REACH = 1.4
 """m around the person's middle in which they lie."""
 _BORDER = 3
 """px; a silhouette that reaches the border goes on outside."""
-_SHARE = 0.95
+_FAR = 8.0
+"""px; farther off is not worse, for a comparison of shifts."""
+_CLEARLY = 0.5
+"""Without the camera that is wrong, the others contradict each other by so much less."""
+_SHARE = 0.9
 """Quantile over lines: a hand that one mask lacks must not speak for a camera."""
 
 
@@ -32,8 +38,8 @@ class Sight:
 
     outside: NDArray[np.float32]
     """(height, width) px from the silhouette, 0 inside."""
-    pixels: tuple[Array, ...]
-    """For each camera, (RAYS, _STEPS, 2) where the lines of sight through this silhouette's rim
+    pixels: tuple[NDArray[np.float32], ...]
+    """For each camera, (n_lines, _STEPS, 2) where the lines of sight through this silhouette's rim
     appear there."""
 
 
@@ -41,8 +47,6 @@ def sights(
     cameras: Sequence[Camera], frames: Sequence[tuple[Mask | None, ...]]
 ) -> list[list[Sight | None]]:
     """Return, for each frame, what each camera knows; None where it has no silhouette."""
-    import cv2
-
     middle = _middle(cameras, frames)
     found: list[list[Sight | None]] = []
     for masks in frames:
@@ -59,18 +63,24 @@ def sights(
             ahead = (middle - camera.centre) @ rays.T
             along = ahead[:, None] + np.linspace(-_REACH, _REACH, _STEPS)
             points = camera.centre + np.maximum(along, 0.05)[..., None] * rays[:, None]
-            outside = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, 3)
-            row.append(Sight(outside, tuple(other.project(points) for other in cameras)))
+            outside = np.asarray(
+                cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, 3), dtype=np.float32
+            )
+            row.append(
+                Sight(outside, tuple(other.project(points).astype(np.float32) for other in cameras))
+            )
         found.append(row)
     return found
 
 
-def disagreement(
+def distances(
     seen: Sequence[Sequence[Sight | None]],
+    *,
     without: int | None = None,
     late: tuple[int, int] = (-1, 0),
-) -> float:
-    """Return by how many pixels silhouettes contradict each other: a high quantile over lines.
+    margin: int = 0,
+) -> Array:
+    """Return, for lines of sight of all cameras and frames, how far from the person they pass, px.
 
     Parameters
     ----------
@@ -80,15 +90,12 @@ def disagreement(
         A camera to leave out.
     late : (camera, frames)
         A camera to be taken so many frames later than the others.
-
-    Returns
-    -------
-    float
-        NaN where fewer than two cameras have silhouettes.
+    margin
+        Frames left out at either end, at least the lateness.
     """
     camera, shift = late
-    far: list[Array] = []
-    for t in range(max(0, -shift), len(seen) - max(0, shift)):
+    far: list[NDArray[np.float32]] = []
+    for t in range(margin, len(seen) - margin):
         row = list(seen[t])
         if camera >= 0:
             row[camera] = seen[t + shift][camera]
@@ -97,33 +104,80 @@ def disagreement(
             for c, sight in enumerate(row)
             if sight is not None and c != without
         ]
-    values = np.concatenate(far) if far else np.empty(0)
-    values = values[np.isfinite(values)]
-    return float(np.quantile(values, _SHARE)) if len(values) else float("nan")
+    values = np.concatenate(far).astype(np.float64) if far else np.empty(0)
+    return values[np.isfinite(values)]
 
 
-def _off(sight: Sight, c: int, row: Sequence[Sight | None], without: int | None) -> Array:
-    """Return each line's least distance, (RAYS,), from lying in all other silhouettes; NaN: alone."""
-    worst = np.full(sight.pixels[c].shape[:2], np.nan)
-    unseen = np.zeros(worst.shape, dtype=bool)
+def disagreement(seen: Sequence[Sequence[Sight | None]], without: int | None = None) -> float:
+    """Return by how many pixels silhouettes contradict each other: a high quantile over lines.
+
+    NaN where fewer than two cameras have silhouettes.
+    """
+    far = distances(seen, without=without)
+    return float(np.quantile(far, _SHARE)) if len(far) else float("nan")
+
+
+def find_culprit(seen: Sequence[Sequence[Sight | None]]) -> int | None:
+    """Return the camera without which the others agree; None where that is no single one."""
+    n = len(seen[0])
+    if n < 3:
+        return None  # of two, either may be wrong
+    left = np.array([_cost(distances(seen, without=c)) for c in range(n)])
+    order = np.argsort(left)
+    best, second = left[order[0]], left[order[1]]
+    return int(order[0]) if best < _CLEARLY * second else None
+
+
+@dataclass(frozen=True)
+class Lateness:
+    """The camera that, shown so many frames later, agrees best with the others."""
+
+    camera: int
+    frames: int
+    """Positive where the camera's images come later than they should; 0: none does better."""
+    mended: float
+    """The share of the cameras' disagreement that taking it so mends."""
+
+
+def find_lateness(seen: Sequence[Sequence[Sight | None]], most: int) -> Lateness:
+    """Return which camera's time seems off, and by how much.
+
+    Parameters
+    ----------
+    seen
+        Of successive frames, more than twice ``most``.
+    most
+        Largest lateness looked for, in frames.
+    """
+    unmoved = _cost(distances(seen, margin=most))
+    best = Lateness(0, 0, 0.0)
+    if not unmoved > 0:
+        return best
+    for camera in range(len(seen[0])):
+        for shift in sorted(range(-most, most + 1), key=abs):
+            cost = _cost(distances(seen, late=(camera, shift), margin=most))
+            if cost < unmoved * (1 - best.mended):
+                best = Lateness(camera, shift, 1 - cost / unmoved)
+    return best
+
+
+def _cost(far: Array) -> float:
+    """Return the mean distance, lines that are far off counted as `_FAR`."""
+    return float(np.minimum(far, _FAR).mean()) if len(far) else float("nan")
+
+
+def _off(
+    sight: Sight, c: int, row: Sequence[Sight | None], without: int | None
+) -> NDArray[np.float32]:
+    """Return each line's least distance, (n_lines,), from lying in all other silhouettes."""
+    shape = sight.pixels[c].shape[:2]
+    worst, unseen = np.full(shape, -1, dtype=np.float32), np.zeros(shape, dtype=np.bool_)
     for k, other in enumerate(row):
-        if other is None or k in (c, without):
-            continue
-        height, width = other.outside.shape
-        pixels = sight.pixels[k]
-        with np.errstate(invalid="ignore"):
-            inside = (pixels > -0.5).all(axis=-1) & (pixels[..., 0] < width - 0.5)
-            inside &= pixels[..., 1] < height - 0.5
-        unseen |= ~inside
-        at = np.rint(pixels[inside]).astype(np.intp)
-        worst[inside] = np.fmax(worst[inside], other.outside[at[:, 1], at[:, 0]])
-    # where one camera cannot see it cannot deny: a line that may pass through the person there
-    # tells nothing
-    tells = ~(unseen & (worst == 0)).any(axis=1)
-    worst[unseen] = np.nan
-    known = tells & np.isfinite(worst).any(axis=1)
-    least = np.full(len(worst), np.nan)
-    least[known] = np.nanmin(worst[known], axis=1)
+        if other is not None and k not in (c, without):
+            hold_against_kernel(sight.pixels[k], other.outside, worst, unseen)
+    unseen |= worst < 0  # nobody else looks
+    least = np.empty(shape[0], dtype=np.float32)
+    least_kernel(worst, unseen, least)
     return least
 
 
@@ -156,5 +210,4 @@ def _middle(cameras: Sequence[Camera], frames: Sequence[tuple[Mask | None, ...]]
             off = np.eye(3) - np.outer(ray, ray)
             a += off
             b += off @ camera.centre
-    middle: Array = np.linalg.lstsq(a, b, rcond=None)[0]
-    return middle
+    return np.asarray(np.linalg.lstsq(a, b, rcond=None)[0], dtype=np.float64)
