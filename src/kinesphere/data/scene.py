@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from kinesphere.data.arrays import Array, Mask, frozen
 from kinesphere.data.camera import Camera
 from kinesphere.data.history import History
+from kinesphere.data.surface import Surface
 from kinesphere.errors import BadScene
 
 Image: TypeAlias = NDArray[np.uint8]
@@ -87,6 +88,8 @@ class Scene:
     """(3, 3) rotation from the calibration's axes to the scene's world."""
     body: BodyChoice = field(default_factory=BodyChoice)
     start: StartChoice = field(default_factory=StartChoice)
+    surface: Surface | None = None
+    """The person's own body model; the bundled one serves where there is none."""
     has_masks: bool = False
     """Whether masks of the person are given: they then stand in for segmentation."""
     first_frame: int = 0

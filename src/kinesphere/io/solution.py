@@ -34,8 +34,8 @@ FILES = (
     "summary.json",
 )
 """What ``write_solution`` writes by itself."""
-_BESIDE = ("report.html", ".DS_Store", "Thumbs.db", "desktop.ini")
-"""What may stand beside them: the report, and what file managers leave wherever they look."""
+_BESIDE = ("report.html", "overlays.jpg", "tracking.csv", ".DS_Store", "Thumbs.db", "desktop.ini")
+"""What may stand beside them: reports, pictures, and what file managers leave behind."""
 _C3D = "c3d"
 
 

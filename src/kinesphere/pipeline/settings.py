@@ -9,6 +9,7 @@ from typing import Any, get_type_hints
 
 from kinesphere.errors import BadSetting, UnreadableFile
 from kinesphere.labelling import LabellingSettings
+from kinesphere.markerless.settings import TrackSettings
 from kinesphere.normalization import NormalizationSettings
 from kinesphere.parameterization import ParameterizationSettings
 from kinesphere.pipeline.values import value_from
@@ -24,6 +25,7 @@ class Settings:
     labelling: LabellingSettings = field(default_factory=LabellingSettings)
     orientation: OrientationSettings = field(default_factory=OrientationSettings)
     skeleton: SkeletonSettings = field(default_factory=SkeletonSettings)
+    tracking: TrackSettings = field(default_factory=TrackSettings)
     normalization: NormalizationSettings = field(default_factory=NormalizationSettings)
     parameterization: ParameterizationSettings = field(default_factory=ParameterizationSettings)
 
