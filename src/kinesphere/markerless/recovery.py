@@ -48,9 +48,7 @@ class Watch:
         return due
 
 
-def recovered(
-    fitter: Fitter, pose: Pose, names: list[str], refined: int = _REFINED
-) -> Pose | None:
+def recovered(fitter: Fitter, pose: Pose, names: list[str], refined: int = _REFINED) -> Pose | None:
     """Return a pose that explains clearly more, with arms or legs elsewhere; None if there is none.
 
     Every hypothesis is drawn and scored, the best ``refined`` are fitted and scored again.
