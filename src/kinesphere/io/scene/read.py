@@ -23,7 +23,7 @@ from kinesphere.errors import BadScene, UnreadableFile
 from kinesphere.io.calibration import CalibratedCamera, read_calibration
 from kinesphere.io.scene.footage import RecordedFootage, mask_offset, median_plate
 from kinesphere.io.scene.spec import CameraSpec, SceneSpec
-from kinesphere.io.scene.streams import Stream, open_stream
+from kinesphere.io.scene.streams import ImageFolder, Stream, open_stream
 from kinesphere.io.scene.world import camera_in_world, settle_unit, settle_up
 from kinesphere.io.text import read_text
 
@@ -206,14 +206,16 @@ def _calibrated(
 
 
 def _open(camera: CameraSpec, calibrated: CalibratedCamera, folder: Path) -> _Opened:
-    masks = None if camera.masks is None else open_stream(folder / camera.masks)
+    stream = open_stream(folder / camera.images)
+    step = stream.step if isinstance(stream, ImageFolder) else 1
+    masks = None if camera.masks is None else open_stream(folder / camera.masks, step)
     reference = camera.reference_masks
     return _Opened(
         spec=camera,
         calibrated=calibrated,
-        stream=open_stream(folder / camera.images),
+        stream=stream,
         masks=masks,
-        reference=None if reference is None else open_stream(folder / reference),
+        reference=None if reference is None else open_stream(folder / reference, step),
     )
 
 

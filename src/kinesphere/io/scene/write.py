@@ -17,7 +17,7 @@ from kinesphere.io.images import write_image
 
 KINDS = ("png", "jpg", "mkv", "mp4")
 """How images are kept: files without and with loss, a video without and with loss."""
-_CODECS = {"mkv": ("ffv1", "bgr0", {}), "mp4": ("libx264", "yuv420p", {"crf": "16"})}
+_CODECS = {"mkv": ("ffv1", "bgr0", {"g": "1"}), "mp4": ("libx264", "yuv420p", {"crf": "16"})}
 
 
 def write_scene(
