@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from kinesphere.data import motion_from_parameters as motion_from_parameters
     from kinesphere.data.edits import Edit as Edit
     from kinesphere.editing import apply_edits as apply_edits
+    from kinesphere.editing import attach_surface as attach_surface
+    from kinesphere.editing import skin as skin
     from kinesphere.errors import KinesphereError as KinesphereError
     from kinesphere.io import read as read
     from kinesphere.io import write as write
@@ -47,7 +49,7 @@ _ROOMS = {
         "Surface TopologicalModel bundled_body motion_from_parameters"
     ),
     "data.edits": "Edit",
-    "editing": "apply_edits",
+    "editing": "apply_edits attach_surface skin",
     "errors": "KinesphereError",
     "io": "read write",
     "labelling": "label",
