@@ -17,7 +17,7 @@ def skin(
     surface: Surface,
     motion: Motion,
     frames: NDArray[np.intp] | None = None,
-    blend: Blend = "linear",
+    blend: Blend = "dual-quaternion",
 ) -> Array:
     """Return the vertices of a surface that rides on a moving skeleton.
 
