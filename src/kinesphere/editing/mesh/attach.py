@@ -11,7 +11,7 @@ from kinesphere.editing.mesh.proportions import begins_of, fit_limbs
 from kinesphere.editing.mesh.settings import SurfaceSettings
 from kinesphere.editing.mesh.shape import fit_shape
 from kinesphere.editing.mesh.standing import ups_while_standing
-from kinesphere.geometry.skinning import linear_blend
+from kinesphere.editing.mesh.untangle import inverted_faces, softened, untangled
 
 
 def attach_surface(
@@ -43,10 +43,11 @@ def attach_surface(
     body = body.shaped(steps)
     maps = fit_limbs(body, skeleton, ups_while_standing(motion))
     if settings.fit_girths:
-        maps = fit_girths(body, skeleton, maps, settings.marker_height)
+        maps = fit_girths(body, skeleton, maps, settings.marker_height / 1e3)
     matrices, shifts = maps.matrices()
-    shares = body.weight_limbs, body.weight_shares
-    vertices = linear_blend(body.vertices, *shares, matrices[None], shifts[None])[0]
+    vertices = _carried_softly(body, matrices, shifts)
+    vertices = untangled(vertices, body.faces, body.weights, body.vertices, maps.turns)
+    turned = inverted_faces(vertices, body.faces, body.weights, body.vertices, maps.turns)
     step = Step(
         "surface",
         settings_as_json(settings),
@@ -56,6 +57,7 @@ def attach_surface(
                 name: [round(float(s), 3) for s in scale]
                 for name, scale in zip(body.limbs, maps.scales, strict=True)
             },
+            "inverted_triangles": int(turned.sum()),
         },
     )
     return replace(
@@ -66,6 +68,12 @@ def attach_surface(
         shapes=(),
         history=(*body.history, step),
     )
+
+
+def _carried_softly(body: Surface, matrices: Array, shifts: Array) -> Array:
+    weights = softened(body.weights, body.faces)
+    moved = np.einsum("vl,lij,vj->vi", weights, matrices, body.vertices, optimize=True)
+    return np.asarray(moved + weights @ shifts)
 
 
 def _carried(matrices: Array, shifts: Array, points: Array) -> Array:

@@ -14,6 +14,9 @@ _LIKELY = 0.12
 _SHIFT = 0.02  # m, the same of where torso and head lie about their joints
 _SKIN = 0.01  # m, how well a marker tells where the skin is
 _OWN = 0.25  # weight from which a triangle belongs to a limb
+_FLESH = 0.85
+"""Share of an arm's or leg's length up to which markers count: bars at the wrist stand off by
+several cm, and what sits on a joint slides over it."""
 _UPRIGHT = ("pelvis", "trunk", "head")
 
 
@@ -29,11 +32,14 @@ def fit_girths(body: Surface, skeleton: Skeleton, maps: LimbMaps, marker_height:
     marker_height
         m, from the skin to the middle of a marker.
     """
-    vertices = linear_blend(
-        body.vertices, body.weight_limbs, body.weight_shares, *(m[None] for m in maps.matrices())
-    )[0]
+    matrices, shifts = maps.matrices()
+    shares = body.weight_limbs, body.weight_shares
+    vertices = linear_blend(body.vertices, *shares, matrices[None], shifts[None])[0]
     scales, places = maps.scales.copy(), maps.places.copy()
     origins = default_origins(skeleton)
+    joints, ends = (
+        np.einsum("lij,lj->li", matrices, at) + shifts for at in (body.joint_centres, body.ends)
+    )
     kinds = [name.removeprefix("left_").removeprefix("right_") for name in body.limbs]
     for kind in dict.fromkeys(kinds):
         if kind in ("hand", "foot"):
@@ -42,6 +48,9 @@ def fit_girths(body: Surface, skeleton: Skeleton, maps: LimbMaps, marker_height:
         for limb in (i for i, k in enumerate(kinds) if k == kind):
             points = skeleton.limbs[limb].marker_positions + origins[limb]
             points = points[np.isfinite(points).all(axis=1)]
+            if kind not in _UPRIGHT:
+                reach = (points[:, 1] - joints[limb, 1]) / (ends[limb, 1] - joints[limb, 1])
+                points = points[reach < _FLESH]
             row, value = _seen_from_axis(body, vertices, limb, maps.places[limb], points)
             rows.append(row)
             values.append(value - marker_height)

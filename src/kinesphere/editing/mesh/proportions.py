@@ -54,29 +54,38 @@ def fit_limbs(body: Surface, skeleton: Skeleton, ups: Array) -> LimbMaps:
     """
     n = len(body.limbs)
     begins = begins_of(skeleton)
-    turns = np.tile(np.eye(3), (n, 1, 1))
-    scales = np.ones((n, 3))
-    places = begins.copy()
-    stretch = np.full(n, np.nan)
-    for limb, name in enumerate(body.limbs):
-        kind = name.removeprefix("left_").removeprefix("right_")
-        parent = int(body.parents[limb])
-        if kind in (*_CHAINS, "hand") and parent >= 0:
-            points = turns[parent] @ _unit(body.ends[limb] - body.joint_centres[limb])
-            turns[limb] = rotation_between(points, DOWN) @ turns[parent]
-        elif kind == "foot":
-            turns[limb] = rotation_between(np.array([0.0, 1.0, 0.0]), ups[limb])
-        if kind in _CHAINS and len(below := np.flatnonzero(body.parents == limb)):
-            wanted = np.linalg.norm(begins[below[0]] - begins[limb])
-            stretch[limb] = wanted / np.linalg.norm(body.ends[limb] - body.joint_centres[limb])
+    kinds = [name.removeprefix("left_").removeprefix("right_") for name in body.limbs]
+    lengths = np.full(n, np.nan)
+    for limb in (i for i, kind in enumerate(kinds) if kind in _CHAINS):
+        if len(below := np.flatnonzero(body.parents == limb)):
+            lengths[limb] = np.linalg.norm(begins[below[0]] - begins[limb])
+    stretch = lengths / np.linalg.norm(body.ends - body.joint_centres, axis=1)
     size = float(np.nanmedian(stretch)) if np.isfinite(stretch).any() else 1.0
     size = float(np.clip(size, _SQUAT, _STOUT))
-    for limb in range(n):
-        scales[limb] = size
-        if np.isfinite(stretch[limb]):
-            scales[limb, 1] = np.clip(stretch[limb], _SQUAT, _STOUT)
+
+    scales, places = np.full((n, 3), size), begins.copy()
+    known = np.isfinite(stretch)
+    scales[known, 1] = np.clip(stretch[known], _SQUAT, _STOUT)
     for limb, scale, place in _torso(body, begins, size):
         scales[limb], places[limb] = scale, place
+    turns = np.tile(np.eye(3), (n, 1, 1))
+    for limb, kind in enumerate(kinds):
+        parent = int(body.parents[limb])
+        if kind == "foot":
+            turns[limb] = rotation_between(np.array([0.0, 1.0, 0.0]), ups[limb])
+        if kind not in (*_CHAINS, "hand") or parent < 0:
+            continue
+        target = DOWN
+        if kind == "upper_arm":
+            # half-way between the skeleton's shoulder and the trunk's, which keeps the armpit whole
+            armhole = places[parent] + scales[parent] * (
+                turns[parent] @ (body.joint_centres[limb] - body.joint_centres[parent])
+            )
+            places[limb, ::2] = (begins[limb, ::2] + armhole[::2]) / 2
+            if len(below := np.flatnonzero(body.parents == limb)):
+                target = _unit(begins[below[0]] - places[limb])
+        points = turns[parent] @ _unit(body.ends[limb] - body.joint_centres[limb])
+        turns[limb] = rotation_between(points, target) @ turns[parent]
     return LimbMaps(turns, body.joint_centres.copy(), scales, places)
 
 

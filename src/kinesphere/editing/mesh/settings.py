@@ -16,11 +16,11 @@ class SurfaceSettings:
     )
     fit_girths: bool = setting(True, "whether markers tell how thick the limbs are")
     marker_height: float = setting(
-        0.010,
+        10.0,
         "from the skin to the middle of a marker",
-        unit="m",
+        unit="mm",
         low=0.0,
-        high=0.05,
+        high=50.0,
         source="markers of 14 to 16 mm on a base of 2 to 3 mm",
     )
 
