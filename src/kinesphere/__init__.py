@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from kinesphere.data import TopologicalModel as TopologicalModel
     from kinesphere.data import motion_from_parameters as motion_from_parameters
     from kinesphere.data.edits import Edit as Edit
+    from kinesphere.data.isb import IsbAngles as IsbAngles
+    from kinesphere.data.isb import isb_angles as isb_angles
     from kinesphere.editing import apply_edits as apply_edits
     from kinesphere.errors import KinesphereError as KinesphereError
     from kinesphere.io import read as read
@@ -45,6 +47,7 @@ _ROOMS = {
         "TopologicalModel motion_from_parameters"
     ),
     "data.edits": "Edit",
+    "data.isb": "IsbAngles isb_angles",
     "editing": "apply_edits",
     "errors": "KinesphereError",
     "io": "read write",
