@@ -12,6 +12,8 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from kinesphere.comparison import Comparison as Comparison
+    from kinesphere.comparison import compare as compare
     from kinesphere.data import Analog as Analog
     from kinesphere.data import Event as Event
     from kinesphere.data import Joint as Joint
@@ -42,6 +44,7 @@ except PackageNotFoundError:  # run from a source tree that nobody installed
     __version__ = "0+unknown"
 
 _ROOMS = {
+    "comparison": "Comparison compare",
     "data": (
         "Analog Event Joint Limb Motion Output Parameters Recording Skeleton Solution "
         "TopologicalModel motion_from_parameters"
