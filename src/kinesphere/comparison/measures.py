@@ -106,7 +106,8 @@ def effective_samples(series: Array) -> float:
     rho = np.where(pairs > 0, products / np.maximum(pairs, 1) / variance, 0.0)
     sums = rho[: len(rho) // 2 * 2].reshape(-1, 2).sum(axis=1)
     stop = int(np.argmax(sums <= 0)) if (sums <= 0).any() else len(sums)
-    inefficiency = 2 * float(np.minimum.accumulate(sums[:stop]).sum()) - 1 if stop else 1.0
+    shares = pairs / n  # how many samples have a neighbour so far away
+    inefficiency = 2 * float((shares * rho)[: 2 * stop].sum()) - 1 if stop else 1.0
     return float(np.clip(n / max(inefficiency, 1.0), 1.0, n))
 
 

@@ -6,6 +6,7 @@ from kinesphere.comparison.alignment import LimbAlignment, WorldAlignment, fit_l
 from kinesphere.comparison.angles import JointPoses, bend, clinical, own_axes, own_before
 from kinesphere.comparison.result import Comparison, JointComparison, ParameterComparison
 from kinesphere.comparison.sides import Side, sampled, side_from, unknown_twists
+from kinesphere.comparison.refinement import common_times, joint_centres, refined
 from kinesphere.comparison.timing import TimeOffset, find_offset, overlap_of
 from kinesphere.data import Array, Motion, Parameters, Solution
 from kinesphere.data.isb import GIMBAL_MARGIN_DEG, IsbJoint, isb_joint, joint_angles
@@ -60,10 +61,10 @@ def compare(
             f"{', '.join(a.skeleton.joint_names[:4]) or 'none'} here, "
             f"{', '.join(b.skeleton.joint_names[:4]) or 'none'} there"
         )
-    at = _given(a, b, offset) if offset is not None else find_offset(a, b)
-    times = _common_times(a, b, at)
+    at = _given(a, b, offset) if offset is not None else refined(find_offset(a, b), a, b, names)
+    times = common_times(a, b, at.seconds)
     a, b = sampled(a, times), sampled(b, times + at.seconds)
-    centres = [_centres(side, names) for side in (a, b)]
+    centres = [joint_centres(side, names) for side in (a, b)]
     world = fit_world(*centres)
     turn = np.eye(3) if world is None else world.rotation
     moved = turn @ b.motion.rotations
@@ -137,27 +138,6 @@ def _given(a: Side, b: Side, offset: float) -> TimeOffset:
     if not np.isfinite(offset):
         raise BadSetting(f"offset is {offset} s; a finite number of seconds was expected")
     return TimeOffset(float(offset), float("nan"), overlap_of(a, b, offset), given=True)
-
-
-def _common_times(a: Side, b: Side, offset: TimeOffset) -> Array:
-    """Return the frames of the slower side that the other covers, (n,) s on the first's clock."""
-    slow, late = (a, 0.0) if a.motion.rate <= b.motion.rate else (b, offset.seconds)
-    times = slow.motion.times - late
-    slack = 1e-6 / max(a.motion.rate, b.motion.rate)
-    inside = (times >= max(0.0, -offset.seconds) - slack) & (
-        times <= min(a.duration, b.duration - offset.seconds) + slack
-    )
-    if not inside.any():
-        raise DegenerateMotion(
-            f"with an offset of {offset.seconds:+.3f} s the two have no moment in common: the "
-            f"first lasts {a.duration:.3f} s, the second {b.duration:.3f} s"
-        )
-    return times[inside]
-
-
-def _centres(side: Side, names: list[str]) -> Array:
-    columns = [side.motion.skeleton.joint_names.index(name) for name in names]
-    return side.motion.joint_centres()[:, columns]
 
 
 def _root(a: Side, b: Side, moved: Array, frames: _Frames) -> list[ParameterComparison]:
