@@ -8,6 +8,8 @@ from kinesphere.data import Array
 from kinesphere.geometry.rotations import mean_rotation, nearest_rotation, rotation_angle
 from kinesphere.geometry.vectors import is_seen, lengths
 
+_ROUNDS = 10
+_TINY = 1e-9  # m
 _FLAT = 1e-3
 """Spread of the points beside their longest line, as a share of it, that tells a turn about it."""
 
@@ -55,6 +57,9 @@ class LimbAlignment:
 def fit_world(first: Array, second: Array) -> WorldAlignment | None:
     """Return the rigid fit of one side's joint centres onto the other's (Kabsch 1976).
 
+    Reweighted by the Cauchy function of the distance, on the scale of the median: a joint that the
+    two put elsewhere, or an arm that one of them lost, does not turn the whole body.
+
     Parameters
     ----------
     first, second : (n_frames, n_joints, 3) m
@@ -69,13 +74,17 @@ def fit_world(first: Array, second: Array) -> WorldAlignment | None:
     p, q = first[known], second[known]
     if len(p) < 3:
         return None
-    middle_p, middle_q = p.mean(axis=0), q.mean(axis=0)
-    spreads = [np.linalg.svd(x, compute_uv=False) for x in (p - middle_p, q - middle_q)]
+    spreads = [np.linalg.svd(x - x.mean(axis=0), compute_uv=False) for x in (p, q)]
     if any(s[1] <= _FLAT * s[0] for s in spreads):
         return None
-    rotation = nearest_rotation((p - middle_p).T @ (q - middle_q))
-    shift = middle_p - rotation @ middle_q
-    off = lengths(p - (q @ rotation.T + shift))
+    weights = np.ones(len(p))
+    for _ in range(_ROUNDS):
+        share = weights / weights.sum()
+        middle_p, middle_q = share @ p, share @ q
+        rotation = nearest_rotation((share[:, None] * (p - middle_p)).T @ (q - middle_q))
+        shift = middle_p - rotation @ middle_q
+        off = lengths(p - (q @ rotation.T + shift))
+        weights = 1 / (1 + (off / max(float(np.median(off)), _TINY)) ** 2)
     return WorldAlignment(rotation, shift, float(np.sqrt(np.mean(off**2))))
 
 

@@ -4,9 +4,9 @@ import numpy as np
 
 from kinesphere.comparison.alignment import LimbAlignment, WorldAlignment, fit_limb, fit_world
 from kinesphere.comparison.angles import JointPoses, bend, clinical, own_axes, own_before
+from kinesphere.comparison.refinement import common_times, joint_centres, refined
 from kinesphere.comparison.result import Comparison, JointComparison, ParameterComparison
 from kinesphere.comparison.sides import Side, sampled, side_from, unknown_twists
-from kinesphere.comparison.refinement import common_times, joint_centres, refined
 from kinesphere.comparison.timing import TimeOffset, find_offset, overlap_of
 from kinesphere.data import Array, Motion, Parameters, Solution
 from kinesphere.data.isb import GIMBAL_MARGIN_DEG, IsbJoint, isb_joint, joint_angles

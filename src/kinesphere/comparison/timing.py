@@ -11,8 +11,8 @@ from kinesphere.errors import DegenerateMotion
 from kinesphere.geometry.rotations import rotation_angle
 
 WINDOW = 0.2
-"""s over which a limb's turn is taken: noise averages out, a step does not. With noise of 3° in every
-frame 0.1 s finds no offset any more, 0.2 s to a tenth of a frame."""
+"""s over which a limb's turn is taken: noise averages out, a step does not. With noise of 3° about
+each axis in every frame, 0.1 s finds no offset any more, 0.2 s one to a tenth of a frame."""
 LEAST_OVERLAP = 0.5
 """Share of the shorter side that both must have in common."""
 LEAST_CORRELATION = 0.6
