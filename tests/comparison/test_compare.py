@@ -8,8 +8,11 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from kinesphere.comparison import compare
+from kinesphere.comparison.sides import sampled, side_from
+from kinesphere.comparison.timing import pooled_correlation
 from kinesphere.data import Motion, PoseFlag
 from kinesphere.errors import BadRecording, BadSetting, DegenerateMotion
+from kinesphere.geometry.rotations import rotation_about
 from kinesphere.synthetic import make_performance
 
 RATE = 100.0
@@ -325,3 +328,133 @@ def test_one_frame_and_a_still_person_take_no_offset_and_say_so(motion, turns):
     still = part(motion, np.zeros(50, dtype=int))
     assert compare(still, still).offset.seconds == 0
     assert compare(motion, one).parameter("left_knee", "bend").after.n == 1
+
+
+def test_one_arm_that_is_lost_does_not_turn_the_body(motion):
+    """The left elbow's and wrist's centres half a metre off: everything else stays in place."""
+    arm = [motion.skeleton.limb_names.index(n) for n in ("left_upper_arm", "left_forearm")]
+    origins = np.array(motion.origins)
+    origins[:, arm] += [0.5, 0.2, -0.3]
+    found = compare(motion, replace(motion, origins=origins))
+    assert found.world.turn < np.deg2rad(0.05)
+    assert np.linalg.norm(found.world.shift) < 1e-3
+    at = {joint.name: joint for joint in found.joints}
+    assert at["left_elbow"].centre == pytest.approx(np.sqrt(0.38), rel=0.01)
+    assert at["right_elbow"].centre < 2e-3
+
+
+def test_ill_conditioned_frames_are_left_out_of_the_angles_they_spoil(performance):
+    """An arm that hangs for the first 15 s: its elevation counts, its plane does not."""
+    motion = performance.motion
+    names = motion.skeleton.limb_names
+    rotations = np.array(motion.rotations)
+    hanging = slice(0, 1500)
+    rotations[hanging, names.index("left_upper_arm")] = rotations[hanging, names.index("trunk")]
+    changed = replace(motion, rotations=rotations)
+    found = compare(changed, changed)
+    plane = found.parameter("left_shoulder", "plane_of_elevation").after
+    assert plane.n <= motion.n_frames - 1500
+    assert found.parameter("left_shoulder", "elevation").after.n == motion.n_frames
+    assert any("left_shoulder" in w and "left out" in w for w in found.warnings)
+    parameters = performance.parameters
+    j = parameters.skeleton.joint_names.index("left_hip")
+    assert parameters.skeleton.joints[j].n_axes == 2
+    angles = np.array(parameters.angles)
+    angles[:300, j, 0] = np.pi / 2  # the limb lies along the other axis
+    edge = replace(parameters, angles=angles)
+    assert compare(edge, edge).parameter("left_hip", "axis1").after.n < motion.n_frames - 290
+
+
+def test_twists_nobody_knows_are_not_compared(motion):
+    """A head that spins about itself where its twist is unknown; where it is known it agrees."""
+    head = motion.skeleton.limb_names.index("head")
+    rotations, flags = np.array(motion.rotations), np.array(motion.flags)
+    spin = rotation_about(np.array([0.0, 1.0, 0.0]), np.linspace(0, 40, 600))
+    rotations[200:800, head] = rotations[200:800, head] @ spin
+    flags[200:800, head] = PoseFlag.TWIST_UNKNOWN
+    found = compare(motion, replace(motion, rotations=rotations, flags=flags))
+    neck = found.parameter("neck", "left_rotation").after
+    assert neck.n == motion.n_frames - 600
+    assert neck.rmsd < EXACT
+    flags[:, head] = PoseFlag.TWIST_UNKNOWN
+    found = compare(motion, replace(motion, rotations=rotations, flags=flags))
+    assert found.parameter("neck", "bend").after.n == motion.n_frames
+    assert any("nothing tells the twist of head on the second" in w for w in found.warnings)
+
+
+def test_correlations_with_gaps_are_those_of_a_loop(rng):
+    first, second = rng.normal(size=(23, 2)) + 5, rng.normal(size=(17, 2)) - 3
+    first[rng.random(first.shape) < 0.2] = np.nan
+    second[4:7] = np.nan
+    lags, found = pooled_correlation(first, second)
+    for lag, value in zip(lags.astype(int), found, strict=True):
+        if np.isnan(value):
+            continue
+        top = left = right = 0.0
+        for a, b in zip(first.T, second.T, strict=True):
+            pairs = [
+                (a[i + lag], b[i])
+                for i in range(17)
+                if 0 <= i + lag < 23 and np.isfinite(a[i + lag] + b[i])
+            ]
+            x, y = np.array(pairs).T
+            top += ((x - x.mean()) * (y - y.mean())).sum()
+            left += ((x - x.mean()) ** 2).sum()
+            right += ((y - y.mean()) ** 2).sum()
+        assert value == pytest.approx(top / np.sqrt(left * right), abs=1e-9)
+    assert np.isfinite(found).sum() > 10
+
+
+def test_a_time_between_frames_is_seen_only_where_both_are(motion):
+    rotations = np.array(motion.rotations[:20])
+    rotations[7] = np.nan
+    side = side_from(replace(part(motion, slice(0, 20)), rotations=rotations))
+    frames = np.array([5.0, 6.0, 6.4, 7.4, 8.0, 8.5])
+    there = np.isfinite(sampled(side, frames / RATE).motion.rotations).all(axis=(1, 2, 3))
+    assert there.tolist() == [True, True, False, False, True, True]
+    halfway = sampled(side, np.array([2.5]) / RATE).motion.rotations[0]
+    ends = [Rotation.from_matrix(rotations[k]) for k in (2, 3)]
+    middle = Rotation.from_matrix(halfway)
+    for k in (0, 1):
+        assert_allclose(
+            (ends[k].inv() * middle).magnitude(), (ends[0].inv() * ends[1]).magnitude() / 2
+        )
+
+
+def test_a_body_in_one_piece_is_compared_with_one_that_has_a_pelvis(motion):
+    """The same motion, its trunk split in two that move as one: hips agree, and it is said."""
+    skeleton = motion.skeleton
+    trunk, *others = skeleton.limbs
+    pelvis = replace(
+        trunk, name="pelvis", parent=None, markers=(), marker_positions=np.empty((0, 3))
+    )
+    hips = ("left_thigh", "right_thigh")
+    limbs = (
+        pelvis,
+        replace(trunk, parent="pelvis"),
+        *(replace(limb, parent="pelvis") if limb.name in hips else limb for limb in others),
+    )
+    lumbar = replace(
+        skeleton.joint("neck"),
+        name="lumbar",
+        parent="pelvis",
+        child="trunk",
+        centre_in_parent=[0.0, 0.1, 0.0],
+        centre_in_child=[0.0, 0.1, 0.0],
+    )
+    joints = tuple(replace(j, parent="pelvis") if j.child in hips else j for j in skeleton.joints)
+    columns = [0, *range(len(skeleton.limbs))]
+    split = replace(
+        motion,
+        skeleton=replace(skeleton, limbs=limbs, joints=(lumbar, *joints)),
+        rotations=motion.rotations[:, columns],
+        origins=motion.origins[:, columns],
+        residuals=motion.residuals[:, columns],
+        flags=motion.flags[:, columns],
+    )
+    found = compare(motion, split)
+    assert found.limbs_only_second == ("pelvis",)
+    assert found.joints_only_second == ("lumbar",)
+    assert any("left_hip hangs from trunk here and from pelvis there" in w for w in found.warnings)
+    assert found.parameter("left_hip", "flexion").after.rmsd < EXACT
+    assert {limb.other for limb in found.limbs if limb.limb == "trunk"} == {"trunk", "pelvis"}

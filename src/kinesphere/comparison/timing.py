@@ -16,7 +16,7 @@ each axis in every frame, 0.1 s finds no offset any more, 0.2 s one to a tenth o
 LEAST_OVERLAP = 0.5
 """Share of the shorter side that both must have in common."""
 LEAST_CORRELATION = 0.6
-"""Below it the two are not taken for one motion; recordings of different people came to 0.55."""
+"""Below it the two are not taken for one motion; recordings of different people came to 0.56."""
 SURE_CORRELATION = 0.8
 """Below it a warning says to look."""
 STILL = np.deg2rad(2.0)
