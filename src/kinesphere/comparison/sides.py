@@ -79,6 +79,13 @@ def told_rotations(side: Side) -> Array:
     return rotations
 
 
+def relative(side: Side, parent: str, child: str) -> Array:
+    """Return ``parent_from_child`` of two limbs, (n_frames, 3, 3)."""
+    names, rotations = side.skeleton.limb_names, side.motion.rotations
+    upper, lower = rotations[:, names.index(parent)], rotations[:, names.index(child)]
+    return np.asarray(np.swapaxes(upper, -1, -2) @ lower)
+
+
 def sampled(side: Side, times: Array) -> Side:
     """Return a side at other times: rotations on the shortest way, points on a line between frames.
 

@@ -2,22 +2,19 @@
 
 import numpy as np
 
-from kinesphere.comparison.alignment import LimbAlignment, WorldAlignment, fit_limb, fit_world
+from kinesphere.comparison.alignment import LimbAlignment, fit_limb, fit_world
 from kinesphere.comparison.angles import JointPoses, bend, clinical, own_axes, own_before
+from kinesphere.comparison.doubts import warnings_of
 from kinesphere.comparison.refinement import common_times, joint_centres, refined
 from kinesphere.comparison.result import Comparison, JointComparison, ParameterComparison
-from kinesphere.comparison.sides import Side, sampled, side_from, unknown_twists
+from kinesphere.comparison.sides import Side, relative, sampled, side_from
 from kinesphere.comparison.timing import TimeOffset, find_offset, overlap_of
 from kinesphere.data import Array, Motion, Parameters, Solution
-from kinesphere.data.isb import GIMBAL_MARGIN_DEG, IsbJoint, isb_joint, joint_angles
+from kinesphere.data.isb import IsbJoint, isb_joint
 from kinesphere.data.isb_conventions import ROOT_CONVENTION, ROOTS
 from kinesphere.errors import BadSetting, DegenerateMotion
 from kinesphere.geometry.rotations import rotation_angle
 from kinesphere.geometry.vectors import lengths
-
-_TILTED = np.deg2rad(5.0)  # between two verticals
-_UNLIKE = 0.5
-"""Median correlation of the clinical angles, or of the bends, below which a warning is loud."""
 
 
 def compare(
@@ -94,7 +91,7 @@ def compare(
         limbs_only_second=_only(b.skeleton.limb_names, a.skeleton.limb_names),
         joints_only_first=_only(a.skeleton.joint_names, b.skeleton.joint_names),
         joints_only_second=_only(b.skeleton.joint_names, a.skeleton.joint_names),
-        warnings=at.warnings + _warnings(a, b, world, parameters, names, joints),
+        warnings=at.warnings + warnings_of(a, b, world, parameters, names, joints),
     )
 
 
@@ -121,17 +118,11 @@ class _Frames:
         child = self.limb(mine.child, theirs.child)
         if parent is None or child is None:
             return None
-        first = _relative(self.first, mine.parent, mine.child)
-        second = _relative(self.second, theirs.parent, theirs.child)
+        first = relative(self.first, mine.parent, mine.child)
+        second = relative(self.second, theirs.parent, theirs.child)
         if not (np.isfinite(first[:, 0, 0]) & np.isfinite(second[:, 0, 0])).any():
             return None
         return JointPoses(first, second, parent.rotation.T @ second @ child.rotation)
-
-
-def _relative(side: Side, parent: str, child: str) -> Array:
-    names, rotations = side.skeleton.limb_names, side.motion.rotations
-    upper, lower = rotations[:, names.index(parent)], rotations[:, names.index(child)]
-    return np.asarray(np.swapaxes(upper, -1, -2) @ lower)
 
 
 def _given(a: Side, b: Side, offset: float) -> TimeOffset:
@@ -201,61 +192,3 @@ def _rms(values: Array) -> float:
 
 def _only(mine: tuple[str, ...], theirs: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(name for name in mine if name not in theirs)
-
-
-def _warnings(
-    a: Side,
-    b: Side,
-    world: WorldAlignment | None,
-    parameters: list[ParameterComparison],
-    names: list[str],
-    joints: list[JointComparison],
-) -> tuple[str, ...]:
-    said = []
-    alike = [p.after.correlation for p in parameters if p.kind == "bend"]
-    alike = [value for value in alike if np.isfinite(value)]
-    if alike and float(np.median(alike)) < _UNLIKE:
-        said.append(
-            f"the joints do not bend alike (median correlation {np.median(alike):.2f}): these do "
-            "not look like two records of one motion at this offset"
-        )
-    if world is None:
-        said.append("the joint centres do not tell how the worlds lie: taken to be the same")
-    elif world.tilt > _TILTED:
-        said.append(
-            f"the verticals of the two worlds differ by {np.rad2deg(world.tilt):.1f}°, which is "
-            "taken out: is up the same on both sides?"
-        )
-    for side, which in ((a, "first"), (b, "second")):
-        if blind := unknown_twists(side):
-            said.append(
-                f"nothing tells the twist of {', '.join(blind)} on the {which} side: its rotation "
-                "and what hangs from it say little"
-            )
-    for name in names:
-        mine, theirs = a.skeleton.joint(name), b.skeleton.joint(name)
-        if mine.parent != theirs.parent:
-            said.append(
-                f"{name} hangs from {mine.parent} here and from {theirs.parent} there: "
-                "their difference is in its angles"
-            )
-    if unseen := [name for name in names if name not in {joint.name for joint in joints}]:
-        said.append(f"never seen on both sides at once, hence left out: {', '.join(unseen)}")
-    near = [name for name in names if _near_gimbal(a, name)]
-    if near:
-        said.append(
-            f"near the singular pose of its clinical sequence in more than a tenth of the frames, "
-            f"which are left out of its first and third angle: {', '.join(near)}"
-        )
-    return tuple(said)
-
-
-def _near_gimbal(side: Side, name: str) -> bool:
-    """Return whether a joint is ill-conditioned in more than a tenth of the frames."""
-    joint = side.skeleton.joint(name)
-    read = isb_joint(joint)
-    if read is None:
-        return False
-    _, margins = joint_angles(_relative(side, joint.parent, joint.child), read)
-    known = margins[np.isfinite(margins)]
-    return bool(len(known) and (known < np.deg2rad(GIMBAL_MARGIN_DEG)).mean() > 0.1)
