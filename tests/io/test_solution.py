@@ -30,7 +30,7 @@ from kinesphere.io import (
     write_solution,
 )
 from kinesphere.io.c3d import read_c3d, write_c3d
-from kinesphere.io.solution import FILES
+from kinesphere.io.solution import FILES, ISB_ANGLES
 
 PRINTED = 5.1e-10  # m, of a TRC file
 STORED = 2e-6  # m, of the 32-bit floats of a C3D file
@@ -117,7 +117,7 @@ def test_everything_comes_back_to_the_last_bit(solution, folder):
 
 
 def test_the_folder_holds_what_the_design_says(folder):
-    assert {path.name for path in folder.iterdir()} == {*FILES, "report.html"}
+    assert {path.name for path in folder.iterdir()} == {*FILES, ISB_ANGLES, "report.html"}
     assert (folder / "report.html").read_text(encoding="utf-8") == "<p>é</p>"
 
 
