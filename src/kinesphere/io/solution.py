@@ -12,6 +12,7 @@ from kinesphere.errors import BadSetting, UnreadableFile
 from kinesphere.io.atomic import check_directory_place, replacing_directory
 from kinesphere.io.bvh import write_bvh
 from kinesphere.io.c3d import read_c3d, write_c3d
+from kinesphere.io.gltf import write_solution_gltf
 from kinesphere.io.isb_csv import write_isb_angles
 from kinesphere.io.opensim import write_osim
 from kinesphere.io.opensim_joints import opensim_name
@@ -24,11 +25,14 @@ from kinesphere.io.trc import write_trc
 
 ARRAYS = "solution.npz"
 RECORDING = "recording.c3d"
+MOTION_GLB = "motion.glb"
+"""Older folders are whole without it."""
 FILES = (
     RECORDING,
     "skeleton.json",
     "parameters.csv",
     "motion.bvh",
+    MOTION_GLB,
     "motion.trc",
     "motion.mot",
     "motion.osim",
@@ -76,6 +80,7 @@ def write_solution(
         if (clinical := isb_angles(solution.motion, skeleton)).joints:
             write_isb_angles(clinical, folder / ISB_ANGLES)
         write_bvh(solution.motion, folder / "motion.bvh")
+        write_solution_gltf(solution, folder / MOTION_GLB)
         write_trc(_model_markers(solution), folder / "motion.trc")
         write_mot(solution.parameters, folder / "motion.mot")
         write_osim(skeleton, folder / "motion.osim")
@@ -120,7 +125,8 @@ def read_solution(directory: str | Path) -> Solution:
         raise UnreadableFile(f"{directory} is {found}; a solved folder was expected")
     if not (directory / ARRAYS).is_file():
         raise UnreadableFile(f"{directory} holds no {ARRAYS}: it is no solved folder")
-    if missing := [name for name in FILES if not (directory / name).is_file()]:
+    wanted = (name for name in FILES if name != MOTION_GLB)
+    if missing := [name for name in wanted if not (directory / name).is_file()]:
         raise UnreadableFile(f"{directory} is not whole: {', '.join(missing)} missing")
     solution = read_solution_arrays(directory / ARRAYS)
     recording = solution.recording
