@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from kinesphere.data import Array
 from kinesphere.errors import BadScene
@@ -57,7 +58,19 @@ def visual_hull(
             "the silhouettes of the cameras have nothing in common; calibration, synchronisation "
             "or masks do not fit together"
         )
-    return fine
+    return _largest_piece(fine, side)
+
+
+def _largest_piece(points: Array, side: float) -> Array:
+    """Return the largest connected piece: corners that few cameras see are cut off by none."""
+    index = np.rint((points - points.min(axis=0)) / side).astype(int)
+    grid = np.zeros(index.max(axis=0) + 1, dtype=bool)
+    grid[tuple(index.T)] = True
+    labels, n = ndimage.label(grid, structure=np.ones((3, 3, 3)))
+    if n < 2:
+        return points
+    of_point = labels[tuple(index.T)]
+    return np.asarray(points[of_point == np.bincount(of_point)[1:].argmax() + 1])
 
 
 def _nearest_point(seen: Sequence[tuple[View, NDArray[np.uint8]]]) -> Array:

@@ -48,10 +48,10 @@ class Watch:
         return due
 
 
-def recovered(fitter: Fitter, pose: Pose, names: list[str]) -> Pose | None:
+def recovered(fitter: Fitter, pose: Pose, names: list[str], refined: int = _REFINED) -> Pose | None:
     """Return a pose that explains clearly more, with arms or legs elsewhere; None if there is none.
 
-    Every hypothesis is drawn and scored, the best few are fitted and scored again.
+    Every hypothesis is drawn and scored, the best ``refined`` are fitted and scored again.
     """
     best, best_score = pose, float(fitter.score(pose)[0].sum())
     needed = best_score + (_MARGIN - 1) * abs(best_score)
@@ -60,7 +60,7 @@ def recovered(fitter: Fitter, pose: Pose, names: list[str]) -> Pose | None:
         tried = sorted(
             _hypotheses(chain, best, name), key=lambda p: -float(fitter.score(p)[0].sum())
         )
-        for start in tried[:_REFINED]:
+        for start in tried[:refined]:
             priors = (expectation(chain, start, settings, widen=3.0), rest(chain, settings, start))
             found = fitter.fit(start, priors)
             score = float(fitter.score(found)[0].sum())

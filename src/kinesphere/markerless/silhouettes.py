@@ -12,6 +12,8 @@ from kinesphere.markerless.views import View
 
 Picture = NDArray[np.uint8]
 
+_SHADOW = (0.55, 1.25)
+"""How much darker or brighter than on the plate the same thing may be."""
 _CUT = 240
 """px; longer side of the images that are cut: GrabCut is slow."""
 
@@ -46,18 +48,19 @@ def start_masks(scene: Scene, views: Sequence[View], frame: Frame) -> list[Pictu
 def plate_difference(picture: Picture, plate: Picture) -> Picture:
     """Return where an image differs from that of the empty scene, 0 or 255.
 
-    Lightness counts half: shadows change it, and clothes seldom have the floor's hue. The
-    threshold is Otsu's, but not below the noise.
+    A shadow, or more light, makes a pixel darker or brighter but leaves its channels in
+    proportion: what counts is how far a colour is from the line of the plate's own, within
+    ``_SHADOW`` of its brightness. The threshold is Otsu's, but above the noise.
     """
-    lab = [
-        cv2.GaussianBlur(cv2.cvtColor(p, cv2.COLOR_RGB2LAB), (5, 5), 0).astype(np.float32)
-        for p in (picture, plate)
-    ]
-    apart = np.sqrt((((lab[0] - lab[1]) * [0.5, 1.0, 1.0]) ** 2).sum(axis=2))
-    scaled = np.clip(apart * 4, 0, 255).astype(np.uint8)
-    noise = 4 * (np.median(apart) + 4 * np.median(np.abs(apart - np.median(apart))) + 2)
+    now, empty = (cv2.GaussianBlur(p, (5, 5), 0).astype(np.float32) for p in (picture, plate))
+    square = np.maximum((empty * empty).sum(axis=2), 1.0)
+    brightness = np.clip((now * empty).sum(axis=2) / square, *_SHADOW)
+    apart = np.sqrt(((now - brightness[..., None] * empty) ** 2).sum(axis=2))
+    noise = float(np.median(apart)) + 1.0
+    scaled = np.clip(apart * 2, 0, 255).astype(np.uint8)
     otsu, _ = cv2.threshold(scaled, 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU)
-    return largest_piece((scaled > max(0.7 * otsu, noise)).astype(np.uint8) * 255)
+    different = scaled > np.clip(0.6 * otsu, 2 * 4 * noise, 2 * 12 * noise)
+    return largest_piece(different.astype(np.uint8) * 255)
 
 
 def largest_piece(mask: Picture) -> Picture:

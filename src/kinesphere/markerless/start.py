@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array
 from kinesphere.data.surface import Surface
-from kinesphere.markerless.anatomy import UP
 from kinesphere.markerless.body import Body
 from kinesphere.markerless.eyes import with_body
 from kinesphere.markerless.fit import Fitter
@@ -17,11 +16,11 @@ from kinesphere.markerless.hypotheses import arm_poses, facing, leg_poses, stand
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.pose import Pose, posed
 from kinesphere.markerless.prediction import rest
+from kinesphere.markerless.recovery import recovered
 from kinesphere.markerless.shape import FACTORS, shaped
 from kinesphere.markerless.shape_fit import Instant, fit_shape
+from kinesphere.markerless.stance import Stance, stances_of
 
-_HEADINGS = 12
-_SIZES = (-0.05, 0.05)
 _COARSE = ((8, 6), (4, 3))
 _FINER = ((8, 3), (4, 4), (2, 3))
 
@@ -85,17 +84,14 @@ def find_start(
     hull = visual_hull(views, masks)
     for eye, mask in zip(fitter.eyes, masks, strict=True):
         eye.evidence.look(mask)
-    log_size = _log_size(hull, fitter.body)
-    at = np.array([hull[:, 0].mean(), 0.0, hull[:, 2].mean()]) if position is None else position
+    stances = stances_of(hull, fitter.body, position, heading, sizes=fit)
     tried: list[tuple[float, Pose, Array]] = []
-    for more in _SIZES if fit else (0.0,):
+    for stance in stances:
         logs = np.zeros(len(FACTORS))
-        logs[0] = log_size + more if fit else 0.0
+        logs[0] = stance.log_size
         sized = with_body(fitter, model(shaped(surface, logs)))
         upright = standing(sized.body.chain, arms)
-        low = hull[:, 1].min() - sized.body.bind[:, 1].min() + sized.body.chain.centres[0][1]
-        place = np.array([at[0], at[1] if position is not None else low, at[2]])
-        for pose in _coarse_starts(sized, upright, place, heading):
+        for pose in _coarse_starts(sized, upright, stance):
             found = sized.fit(pose, (rest(sized.body.chain, sized.settings, pose),), _COARSE)
             tried.append((_mean(overlaps(sized, found, masks)), found, logs))
     tried.sort(key=lambda one: -one[0])
@@ -121,24 +117,18 @@ def with_best_arms(fitter: Fitter, pose: Pose) -> Pose:
     return pose
 
 
-def _coarse_starts(
-    fitter: Fitter, upright: Pose, place: Array, heading: Array | None
-) -> list[Pose]:
+def _coarse_starts(fitter: Fitter, upright: Pose, stance: Stance) -> list[Pose]:
+    """Return, for each heading, the leg phase that explains most."""
     chain = fitter.body.chain
-    turns = 2 * np.pi * np.arange(_HEADINGS) / _HEADINGS
-    if heading is not None:
-        first = np.arctan2(heading[2], heading[0])
-        turns = first + np.radians([-20.0, 0.0, 20.0])
     legs = [upright]
     if "left_shank" in chain.limb_names:
         for left, right in ((1, 2), (2, 1), (3, 0), (0, 3)):
             pose = list(leg_poses(chain, upright, "left"))[left]
             legs.append(list(leg_poses(chain, pose, "right"))[right])
     starts = []
-    for turn in turns:
-        looks = np.array([np.cos(turn), 0.0, np.sin(turn)])
-        posed_legs = [facing(pose, place, looks) for pose in legs]
-        starts.append(max(posed_legs, key=lambda p: float(fitter.score(p)[0].sum())))
+    for looks in stance.headings:
+        turned = [facing(pose, stance.place, looks, stance.up) for pose in legs]
+        starts.append(max(turned, key=lambda p: float(fitter.score(p)[0].sum())))
     return starts
 
 
@@ -169,17 +159,10 @@ def _with_shape(
             for eye, picture in zip(sized.eyes, pictures, strict=True):
                 eye.evidence.look(picture)
             pose = sized.fit(pose, (rest(sized.body.chain, sized.settings, pose),), _FINER)
+            better = recovered(sized, pose, ["left arm", "right arm"], refined=5)
+            pose = pose if better is None else better
         done.append((_mean(overlaps(sized, pose, masks)), pose, logs))
     return max(done, key=lambda one: one[0])
-
-
-def _log_size(hull: Array, body: Body) -> float:
-    """Return the logarithm of how much taller the hull is than the body, by its middle column."""
-    middle = np.median(hull[:, [0, 2]], axis=0)
-    column = np.linalg.norm(hull[:, [0, 2]] - middle, axis=1) < 0.25
-    tall = np.ptp(hull[column, 1]) if column.any() else np.ptp(hull[:, 1])
-    own = np.ptp(body.bind @ UP)
-    return float(np.clip(np.log(max(tall, 0.1) / own), -0.35, 0.25))
 
 
 def _mean(values: Array) -> float:

@@ -15,7 +15,7 @@ from kinesphere.markerless.anatomy import full_body, upper_body
 from kinesphere.markerless.body import Body
 from kinesphere.markerless.contour_fit import ContourFitter
 from kinesphere.markerless.eyes import fitter_for, with_body
-from kinesphere.markerless.first_pose import first_pose
+from kinesphere.markerless.first_pose import FirstPose, first_pose
 from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.pose import Pose
 from kinesphere.markerless.rehearsal import rehearse
@@ -38,6 +38,7 @@ def track(
     surface: Surface,
     settings: TrackSettings | None = None,
     progress: Progress | None = None,
+    start: FirstPose | None = None,
 ) -> TrackedMotion:
     """Follow one person through a scene (Rosenhahn et al. 2006, and what came after).
 
@@ -52,6 +53,8 @@ def track(
         A human body in the bind pose; ``scene.body.model`` says which model it becomes.
     settings
     progress
+    start
+        The pose in the first frame, if it is known; else it is found.
 
     Returns
     -------
@@ -77,7 +80,7 @@ def track(
     seconds: dict[str, float] = {}
     clock = perf_counter()
     say("start", 0, 1)
-    start = first_pose(scene, surface, model, settings, scene.frame(first))
+    start = start or first_pose(scene, surface, model, settings, scene.frame(first))
     logs, pose = start.logs, start.pose
     fitter = fitter_for(model(shaped(surface, logs)), scene.cameras, settings, masks=masks)
     seconds["start"], clock = perf_counter() - clock, perf_counter()
