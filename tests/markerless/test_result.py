@@ -71,8 +71,15 @@ def test_lost_limbs_and_frames_have_no_pose(tracked):
     step = tracking_step(spoiled, ("a", "b"))
     assert step.findings["n_solved"] == FRAMES - 3
     assert step.findings["frames_lost_of_limb"]["left_hand"] == 10
-    assert any("left_hand is held lost in 10 of 90 frames" in w for w in step.warnings)
-    assert any("3 of 90 frames have no pose" in w for w in step.warnings)
+
+
+def test_a_camera_that_sees_the_body_elsewhere_is_named(tracked):
+    overlap = np.full((FRAMES, 4), 0.85)
+    assert tracking_step(replace(tracked, overlap=overlap), tuple("abcd")).warnings == ()
+    overlap[:, 2] = 0.5
+    overlap[:5, 2] = np.nan
+    (warning,) = tracking_step(replace(tracked, overlap=overlap), tuple("abcd")).warnings
+    assert "0.50 in c, by 0.85 in the others" in warning
 
 
 def test_nobody_found_is_an_error(tracked):
