@@ -17,7 +17,7 @@ from kinesphere.synthetic.film import make_film
 
 @pytest.fixture(scope="module")
 def film():
-    return make_film(5, "arms", size=(200, 150), n_frames=5, masks=True)
+    return make_film(1, "arms", n_frames=5, masks=True)
 
 
 @pytest.fixture(scope="module")
