@@ -10,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
+from kinesphere.data import bundled_body
 from kinesphere.io import replacing
 from kinesphere.io.scene import write_scene
-from kinesphere.synthetic.film import CONDITIONS, MOVEMENTS, Film, make_film
+from kinesphere.synthetic.film import CONDITIONS, MOVEMENTS, Film, another_person, make_film
 
 
 def write_film(film: Film, folder: Path, images: str = "mp4") -> Path:
@@ -45,7 +46,9 @@ def main() -> None:
     parser.add_argument("--masks", action="store_true", help="with perfect masks to track by")
     parser.add_argument("--plates", action="store_true", help="with images of the empty room")
     parser.add_argument("--images", default="mp4", choices=("png", "jpg", "mkv", "mp4"))
+    parser.add_argument("--other", action="store_true", help="a person built unlike the model")
     asked = parser.parse_args()
+    body = bundled_body()
     film = make_film(
         asked.seed,
         asked.movement,
@@ -54,6 +57,7 @@ def main() -> None:
         n_cameras=asked.cameras,
         masks=asked.masks,
         plates=asked.plates,
+        surface=another_person(body, np.random.default_rng(asked.seed)) if asked.other else body,
     )
     print(write_film(film, asked.folder, asked.images))
 
