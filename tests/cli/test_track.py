@@ -14,6 +14,8 @@ from kinesphere.io.images import read_image
 from kinesphere.io.scene import write_scene
 from kinesphere.synthetic.film import make_film
 
+pytestmark = pytest.mark.slow  # rendering takes long in plain Python
+
 
 @pytest.fixture(scope="module")
 def film():
@@ -26,7 +28,6 @@ def scene(film, tmp_path_factory):
     return write_scene(replace(film.scene, name="Small film"), folder, "png")
 
 
-@pytest.mark.slow
 def test_a_scene_becomes_a_solved_folder(call, scene, film, tmp_path):
     out = tmp_path / "out"
     shown = call("track", scene, "-o", out, "--json")

@@ -13,6 +13,8 @@ from kinesphere.markerless.checks import AGREE, check_scene
 from kinesphere.markerless.consistency import disagreement, find_culprit, find_lateness, sights
 from kinesphere.synthetic.film import make_film
 
+pytestmark = pytest.mark.slow  # rendering takes long in plain Python
+
 SIZE = (320, 240)
 DIAGONAL = float(np.hypot(*SIZE))
 

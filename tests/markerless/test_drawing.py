@@ -9,6 +9,8 @@ pytest.importorskip("cv2")
 from kinesphere.markerless.drawing import limb_colours, overlay
 from kinesphere.synthetic.film import make_film
 
+pytestmark = pytest.mark.slow  # rendering takes long in plain Python
+
 
 @pytest.fixture(scope="module")
 def film():

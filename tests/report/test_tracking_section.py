@@ -17,6 +17,8 @@ from kinesphere.report.tracking import (
 )
 from kinesphere.synthetic.film import make_film
 
+pytestmark = pytest.mark.slow  # rendering takes long in plain Python
+
 
 @pytest.fixture(scope="module")
 def film():

@@ -10,6 +10,8 @@ from kinesphere.errors import BadScene, KinesphereError, UnreadableFile
 from kinesphere.io.images import read_image, write_image
 from kinesphere.io.scene import read_scene, write_scene
 
+pytestmark = pytest.mark.slow  # rendering takes long in plain Python
+
 
 def test_images_masks_plates_and_cameras_come_back(folder, film):
     scene = read_scene(folder / "SCENE.toml")

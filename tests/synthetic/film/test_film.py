@@ -15,6 +15,8 @@ from kinesphere.synthetic.film import (
     stretched,
 )
 
+pytestmark = pytest.mark.slow  # rendering takes long in plain Python
+
 SMALL = {"size": (64, 48), "n_frames": 12}
 
 
