@@ -32,6 +32,12 @@ def ring(n, radius=2.6, target=(0, 0.9, 0), height=1.5):
     )
 
 
+@pytest.fixture(name="ring", scope="session")
+def ring_fixture():
+    """Return what puts cameras around a target."""
+    return ring
+
+
 @pytest.fixture(scope="session")
 def whole():
     """Return the bundled body, whole."""

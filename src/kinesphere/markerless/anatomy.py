@@ -145,12 +145,17 @@ def _link(
     limb = name.split("_", 1)[-1]
 
     def ball(towards: Array, swing: float, twist: float, stiffness: float) -> Link:
-        return Link(name, parent, centre, "ball", _NONE, _EMPTY, _EMPTY, along,
-                    _unit(towards), np.radians(swing), np.radians(twist), np.radians(stiffness))  # fmt: skip
+        ranges = (np.radians(angle) for angle in (swing, twist, stiffness))
+        middle = _unit(towards)
+        return Link(name, parent, centre, "ball", _NONE, _EMPTY, _EMPTY, along, middle, *ranges)
 
-    def hinges(axes: Sequence[Array], low: Sequence[float], high: Sequence[float], stiff: float) -> Link:  # fmt: skip
-        return Link(name, parent, centre, "axes", np.array(axes), np.radians(low),
-                    np.radians(high), along, along, stiffness=np.radians(stiff))  # fmt: skip
+    def hinges(
+        axes: Sequence[Array], low: Sequence[float], high: Sequence[float], stiffness: float
+    ) -> Link:
+        ranges = np.radians(low), np.radians(high)
+        usual = float(np.radians(stiffness))
+        stacked = np.array(axes)
+        return Link(name, parent, centre, "axes", stacked, *ranges, along, along, stiffness=usual)
 
     if parent is None:
         return Link(name, None, centre, "free", _NONE, _EMPTY, _EMPTY, along, along)

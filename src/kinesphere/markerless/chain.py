@@ -102,8 +102,10 @@ class Chain:
         """Least and greatest angle of every degree of freedom, (n_dofs,) rad; infinite if none."""
         low, high = np.full(self.n_dofs, -np.inf), np.full(self.n_dofs, np.inf)
         hinges = self.dof_kinds == HINGE
-        low[hinges] = np.concatenate([k.low for k in self.links if k.kind == "axes"] or [[]])
-        high[hinges] = np.concatenate([k.high for k in self.links if k.kind == "axes"] or [[]])
+        jointed = [link for link in self.links if link.kind == "axes"]
+        if jointed:
+            low[hinges] = np.concatenate([link.low for link in jointed])
+            high[hinges] = np.concatenate([link.high for link in jointed])
         return low, high
 
     @cached_property

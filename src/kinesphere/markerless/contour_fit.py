@@ -1,4 +1,4 @@
-"""Poses from contours: votes for limbs, lines of sight, eq. (12) (Rosenhahn et al. 2006, 2.2, 2.3)."""
+"""Poses from contours: votes for limbs, lines of sight, eq. (12) of Rosenhahn et al. 2006."""
 
 from dataclasses import dataclass, field
 
@@ -9,7 +9,8 @@ from kinesphere.data import Array
 from kinesphere.geometry.twists import incidence
 from kinesphere.markerless.fit import Eye, Fitter
 from kinesphere.markerless.kernels.contour import NOWHERE
-from kinesphere.markerless.kernels.levelset import contour_kernel, vote_kernel
+from kinesphere.markerless.kernels.levelset import contour_kernel
+from kinesphere.markerless.kernels.votes import vote_kernel
 from kinesphere.markerless.levelset import Silhouette, cropped, from_mask, segment
 from kinesphere.markerless.pose import Pose, Posed, posed
 from kinesphere.markerless.rim import Rim, around, derivatives, image_directions
@@ -184,7 +185,7 @@ def _add_plucker(
     at: Posed,
     rim: Rim,
     targets: Array,
-    outward: Array,
+    _: Array,
     equations: Normals,
 ) -> None:
     """Add X × n − m = 0, three equations of rank two a match (equation 12), in px at its depth."""

@@ -7,8 +7,10 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Camera
 from kinesphere.markerless.body import Body
-from kinesphere.markerless.evidence import Colours, Evidence, Masks
+from kinesphere.markerless.colours import Colours
+from kinesphere.markerless.evidence import Evidence
 from kinesphere.markerless.fit import Eye, Fitter, near_limbs
+from kinesphere.markerless.masks import Masks
 from kinesphere.markerless.rim import Canvas
 from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.views import view_of

@@ -16,6 +16,8 @@ _TALLEST = 2.6
 """m; how large a space around the person is looked at."""
 _SEEN_BY = 2
 """Cameras that must see a point, at least, for it to count."""
+_EXPLAINS = 0.3
+"""Share of every silhouette that the hull must cover, or the silhouettes are not of one thing."""
 
 
 def visual_hull(
@@ -51,14 +53,15 @@ def visual_hull(
     coarse = coarse[_inside(coarse, seen, step)]
     offsets = (np.arange(4) - 1.5) * side
     cell = np.stack(np.meshgrid(offsets, offsets, offsets, indexing="ij"), -1).reshape(-1, 3)
-    fine = (coarse[:, None] + cell).reshape(-1, 3)
+    fine: Array = (coarse[:, None] + cell).reshape(-1, 3)
     fine = fine[_inside(fine, seen, 0.0)]
-    if len(fine) == 0:
+    hull = _largest_piece(fine, side) if len(fine) else fine
+    if len(hull) == 0 or min(_covered(hull, view, mask, side) for view, mask in seen) < _EXPLAINS:
         raise BadScene(
             "the silhouettes of the cameras have nothing in common; calibration, synchronisation "
             "or masks do not fit together"
         )
-    return _largest_piece(fine, side)
+    return hull
 
 
 def _largest_piece(points: Array, side: float) -> Array:
@@ -105,6 +108,20 @@ def _inside(
         count += shown
         allowed[shown] &= person[row[shown], col[shown]]
     return np.asarray(allowed & (count >= _SEEN_BY))
+
+
+def _covered(hull: Array, view: View, mask: NDArray[np.uint8], side: float) -> float:
+    """Return the share of a silhouette that the hull covers, by cells as large as its cubes."""
+    pixels, depths = np.empty((len(hull), 2)), np.empty(len(hull))
+    project_kernel(hull, view.rotation, view.shift, view.lens, pixels, depths)
+    cell = max(2.0, side * view.lens[0] / max(float(np.median(depths)), 0.1))
+    shape = (int(view.height / cell) + 1, int(view.width / cell) + 1)
+    filled = np.zeros(shape, dtype=bool)
+    col, row = (np.nan_to_num(pixels, nan=-1e6) / cell).astype(int).T
+    shown = (row >= 0) & (row < shape[0]) & (col >= 0) & (col < shape[1])
+    filled[row[shown], col[shown]] = True
+    rows, cols = np.nonzero(mask > 127)
+    return float(filled[(rows / cell).astype(int), (cols / cell).astype(int)].mean())
 
 
 def _grown(mask: NDArray[np.bool_], reach: int) -> NDArray[np.bool_]:

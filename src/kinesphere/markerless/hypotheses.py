@@ -62,7 +62,7 @@ def leg_poses(chain: Chain, pose: Pose, side: str) -> Iterator[Pose]:
 
 
 def standing(chain: Chain, arms: str = "standing") -> Pose:
-    """Return a person upright at the origin, facing x; arms ``standing``, ``a-pose``, ``t-pose``."""
+    """Return a person upright, facing x; arms as ``standing``, ``a-pose`` or ``t-pose``."""
     pose = bind_pose(chain)
     which = {"standing": 0, "a-pose": 4, "t-pose": 5}[arms]
     per_direction = sum(len(twists) for _, twists in _ELBOWS)

@@ -9,7 +9,7 @@ from kinesphere.data import Array, Mask
 from kinesphere.markerless.chain import Chain
 from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.hypotheses import arm_poses, leg_poses
-from kinesphere.markerless.pose import Pose
+from kinesphere.markerless.pose import Pose, limited, moved
 from kinesphere.markerless.prediction import expectation, rest
 from kinesphere.markerless.settings import TrackSettings
 
@@ -20,8 +20,10 @@ _PAUSE = 15
 """Frames between two searches for the same limb."""
 _MARGIN = 1.02
 """How much more another pose must explain to be taken."""
-_REFINED = 3
+_REFINED = 4
 """Hypotheses that are fitted."""
+_CLIMB = (0.5, 0.25)
+"""rad by which each joint of a hypothesis is tried to either side before it is fitted."""
 
 
 @dataclass(eq=False)
@@ -51,7 +53,8 @@ class Watch:
 def recovered(fitter: Fitter, pose: Pose, names: list[str], refined: int = _REFINED) -> Pose | None:
     """Return a pose that explains clearly more, with arms or legs elsewhere; None if there is none.
 
-    Every hypothesis is drawn and scored, the best ``refined`` are fitted and scored again.
+    Every hypothesis is drawn and scored; the best ``refined`` have their joints tried one by one,
+    are fitted and scored again.
     """
     best, best_score = pose, float(fitter.score(pose)[0].sum())
     needed = best_score + (_MARGIN - 1) * abs(best_score)
@@ -61,8 +64,9 @@ def recovered(fitter: Fitter, pose: Pose, names: list[str], refined: int = _REFI
             _hypotheses(chain, best, name), key=lambda p: -float(fitter.score(p)[0].sum())
         )
         for start in tried[:refined]:
-            priors = (expectation(chain, start, settings, widen=3.0), rest(chain, settings, start))
-            found = fitter.fit(start, priors)
+            near = _climbed(fitter, start, name)
+            priors = (expectation(chain, near, settings, widen=3.0), rest(chain, settings, near))
+            found = fitter.fit(near, priors)
             score = float(fitter.score(found)[0].sum())
             if score > max(needed, best_score):
                 best, best_score = found, score
@@ -75,6 +79,26 @@ def _hypotheses(chain: Chain, pose: Pose, name: str) -> Iterator[Pose]:
         yield from arm_poses(chain, pose, side)
     elif f"{side}_thigh" in chain.limb_names:
         yield from leg_poses(chain, pose, side)
+
+
+def _climbed(fitter: Fitter, pose: Pose, name: str) -> Pose:
+    """Return the pose after a search along one joint of the arm or leg after the other."""
+    chain = fitter.body.chain
+    side, which = name.split()
+    limbs = [f"{side}_{limb}" for limb in LIMBS[which][:2]]
+    dofs = [k for k, i in enumerate(chain.dof_limbs) if chain.limb_names[i] in limbs]
+    score = float(fitter.score(pose)[0].sum())
+    for size in _CLIMB:
+        for dof in dofs:
+            for way in (size, -size):
+                step = np.zeros(chain.n_dofs)
+                step[dof] = way
+                tried = limited(chain, moved(chain, pose, step))
+                other = float(fitter.score(tried)[0].sum())
+                if other > score:
+                    pose, score = tried, other
+                    break
+    return pose
 
 
 def held_lost(support: Array, gain: Array, settings: TrackSettings) -> Mask:

@@ -14,8 +14,8 @@ class TrackSettings:
 
     method: str = setting(
         "region",
-        "how images move the model: colour statistics along lines across its rim; the paper's level "
-        "set and contour; the paper's level set drawn towards the model, for clutter",
+        "how images move the model: colour statistics along lines across its rim; the paper's "
+        "level set and contour; the same drawn towards the model, for clutter",
         choices=("region", "level-set", "coupled"),
         source=f"region: Stoiber et al. 2022, doi:10.1007/s11263-022-01579-8; {_PAPER}, 2.1, 3.1",
     )

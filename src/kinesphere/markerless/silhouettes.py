@@ -103,10 +103,9 @@ def cut_out(view: View, picture: Picture, middle: Array) -> Picture:
     if not (labels == cv2.GC_PR_FGD).any() or not (labels == cv2.GC_BGD).any():
         return np.zeros(picture.shape[:2], dtype=np.uint8)
     cv2.setRNGSeed(0)  # GrabCut draws its first clusters at random
-    cv2.grabCut(
-        small[..., ::-1], labels, None, np.zeros((1, 65)), np.zeros((1, 65)), 6,
-        cv2.GC_INIT_WITH_MASK,
-    )  # fmt: skip
+    models = np.zeros((1, 65)), np.zeros((1, 65))
+    bgr = np.ascontiguousarray(small[..., ::-1])
+    cv2.grabCut(bgr, labels, [0, 0, 1, 1], *models, 6, cv2.GC_INIT_WITH_MASK)
     person = ((labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD)).astype(np.uint8) * 255
     whole = cv2.resize(largest_piece(person), (view.width, view.height))
     return np.asarray((whole > 127) * 255, dtype=np.uint8)

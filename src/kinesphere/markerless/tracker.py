@@ -99,10 +99,8 @@ def track(
         for frame in frames:
             clock = perf_counter()
             pictures = pictures_of(frame, masks)
-            if frame.index == first:
-                found = tracking.begin(pictures)
-            else:
-                found = tracking.step(pictures)
+            watch = tracking.begin if frame.index == first else tracking.step
+            found = watch(pictures)
             account.enter(frame, found, perf_counter() - clock)
             say("tracking", account.n_entered, scene.n_frames)
     step = Step(

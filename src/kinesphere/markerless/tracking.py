@@ -43,8 +43,13 @@ class Tracking:
     watch: Watch = field(default_factory=Watch)
 
     def begin(self, pictures: Sequence[NDArray[np.uint8] | None]) -> Found:
-        """Take the present pose as that of these images, (h, w, 3) or masks, one an eye."""
+        """Learn from images, one an eye, (h, w, 3) or masks, that show about the present pose."""
         self._look(pictures)
+        chain, settings = self.fitter.body.chain, self.fitter.settings
+        if self.fitter.open_eyes:
+            self._judged(self.last, learn=1.0)
+            priors = (expectation(chain, self.last, settings), rest(chain, settings, self.last))
+            self.last = self.fitter.fit(self.last, priors)
         return self._judged(self.last, learn=1.0)
 
     def step(self, pictures: Sequence[NDArray[np.uint8] | None]) -> Found:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from kinesphere.data import Array
 from kinesphere.geometry.rotations import rotation_log
 from kinesphere.markerless.chain import Chain
 from kinesphere.markerless.pose import Pose, bind_pose, limited, posed
@@ -16,7 +17,7 @@ def taken_over(source: Chain, pose: Pose, target: Chain) -> Pose:
     the part of the turn that is about its axis.
     """
     at = posed(source, pose)
-    turns = []
+    turns: list[Array] = []
     out = bind_pose(target)
     balls, angles = out.balls.copy(), out.angles.copy()
     for i, link in enumerate(target.links):

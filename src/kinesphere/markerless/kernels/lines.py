@@ -1,4 +1,4 @@
-"""Correspondence lines: across the rim, how likely each pixel is the person's, and where the edge is.
+"""Correspondence lines: how likely pixels across the rim are the person's, where the edge is.
 
 After Stoiber et al. (2022), SRT3D, doi:10.1007/s11263-022-01579-8: the posterior of the contour's
 offset along a line is the product, over its pixels, of what a smoothed step there would expect.
