@@ -19,8 +19,8 @@ def page(films: Sequence[Outcome], real: Sequence[RealOutcome], n_frames: int) -
         "## Rendered films",
         "",
         f"{n_frames} frames at 640 × 480, automatic start. *Astray*: frames in which a joint is "
-        f"more than {ASTRAY * 1e3:.0f} mm from the truth. Of several seeds the worst is shown. Speed is "
-        "that of tracking alone: without rendering, start and fitting of the shape.",
+        f"more than {ASTRAY * 1e3:.0f} mm from the truth. Of several seeds the worst is shown. Speed "
+        "is that of tracking alone: without rendering, start and fitting of the shape.",
         "",
         "| film | cameras | seeds | elbows, mean (limit) | elbows, RMS (limit) | joints, mean "
         "(limit) | joints, 95 % | frames astray | unsolved | overlap | frames/s | |",

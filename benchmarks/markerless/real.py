@@ -1,4 +1,4 @@
-"""Real footage, tracked from its automatic start: overlap with given masks, wrists beside keypoints."""
+"""Real footage from its automatic start: overlap with given masks, wrists beside keypoints."""
 
 from dataclasses import dataclass
 from pathlib import Path
