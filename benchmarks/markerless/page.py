@@ -18,9 +18,10 @@ def page(films: Sequence[Outcome], real: Sequence[RealOutcome], n_frames: int) -
         "",
         "## Rendered films",
         "",
-        f"{n_frames} frames at 640 × 480, automatic start. *Astray*: frames in which a joint is "
-        f"more than {ASTRAY * 1e3:.0f} mm from the truth. Of several seeds the worst is shown. Speed "
-        "is that of tracking alone: without rendering, start and fitting of the shape.",
+        f"{n_frames} frames at 640 × 480; push-ups start from a given pose, 2° and 8 mm off, the "
+        "others automatically. *Astray*: frames in which a joint is more than "
+        f"{ASTRAY * 1e3:.0f} mm from the truth. Of several seeds the worst is shown. Speed is that "
+        "of tracking alone: without rendering, start and fitting of the shape.",
         "",
         "| film | cameras | seeds | elbows, mean (limit) | elbows, RMS (limit) | joints, mean "
         "(limit) | joints, 95 % | frames astray | unsolved | overlap | frames/s | |",
