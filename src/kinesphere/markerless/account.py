@@ -60,7 +60,7 @@ class Account:
         out = np.full(len(self.fitter.eyes), np.nan)
         for i, eye in enumerate(self.fitter.eyes):
             given = frame.references[i] if frame.references[i] is not None else frame.masks[i]
-            if not eye.evidence.seeing and given is None:
+            if not eye.evidence.seeing:
                 continue
             model = eye.canvas.draw(points).limbs != NOWHERE
             person: NDArray[np.bool_]

@@ -104,10 +104,15 @@ def _climbed(fitter: Fitter, pose: Pose, name: str) -> Pose:
 def held_lost(support: Array, gain: Array, settings: TrackSettings) -> Mask:
     """Return which limbs are held lost, (n_limbs,): too little speaks for where they are put.
 
+    Both must fall short, the rim and what it encloses: a limb before another one of the same
+    colours has a poor rim, one in clutter of its own colours a poor gain. A limb whose rim nobody
+    sees is judged by its gain alone; one that is not seen at all is not held lost.
+
     Parameters
     ----------
     support, gain : (n_limbs,)
-        As in `Found`; what cannot be told (NaN) is not held lost.
+        As in `Found`.
     """
+    rim = np.nan_to_num(support, nan=0.0) < settings.least_support
     with np.errstate(invalid="ignore"):
-        return np.asarray((support < settings.least_support) | (gain < settings.least_gain))
+        return np.asarray(rim & (gain < settings.least_gain))

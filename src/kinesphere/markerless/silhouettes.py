@@ -12,7 +12,7 @@ from kinesphere.markerless.views import View
 
 Picture = NDArray[np.uint8]
 
-_SHADOW = (0.55, 1.25)
+_SHADOW = (0.6, 1.25)
 """How much darker or brighter than on the plate the same thing may be."""
 _CUT = 240
 """px; longer side of the images that are cut: GrabCut is slow."""
@@ -50,16 +50,17 @@ def plate_difference(picture: Picture, plate: Picture) -> Picture:
 
     A shadow, or more light, makes a pixel darker or brighter but leaves its channels in
     proportion: what counts is how far a colour is from the line of the plate's own, within
-    ``_SHADOW`` of its brightness. The threshold is Otsu's, but above the noise.
+    ``_SHADOW`` of its brightness. The threshold is low, as dark clothes are hardly unlike a
+    shadow, but above the noise.
     """
     now, empty = (cv2.GaussianBlur(p, (5, 5), 0).astype(np.float32) for p in (picture, plate))
     square = np.maximum((empty * empty).sum(axis=2), 1.0)
     brightness = np.clip((now * empty).sum(axis=2) / square, *_SHADOW)
     apart = np.sqrt(((now - brightness[..., None] * empty) ** 2).sum(axis=2))
-    noise = float(np.median(apart)) + 1.0
-    scaled = np.clip(apart * 2, 0, 255).astype(np.uint8)
+    noise = float(np.median(apart)) + 0.5
+    scaled = np.clip(4 * apart, 0, 255).astype(np.uint8)
     otsu, _ = cv2.threshold(scaled, 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU)
-    different = scaled > np.clip(0.6 * otsu, 2 * 4 * noise, 2 * 12 * noise)
+    different = apart > np.clip(0.3 * otsu / 4, 4 * noise, 12 * noise)
     return largest_piece(different.astype(np.uint8) * 255)
 
 

@@ -96,10 +96,12 @@ def find_start(
             tried.append((_mean(overlaps(sized, found, masks)), found, logs))
     tried.sort(key=lambda one: -one[0])
     finer = []
-    for _, pose, logs in tried[:5]:
+    for _, pose, logs in tried[:4]:
         sized = with_body(fitter, model(shaped(surface, logs)))
         pose = with_best_arms(sized, pose)
         pose = sized.fit(pose, (rest(sized.body.chain, sized.settings, pose),), _FINER)
+        better = recovered(sized, pose, ["left arm", "right arm"])
+        pose = pose if better is None else better
         finer.append((_mean(overlaps(sized, pose, masks)), pose, logs))
     finer.sort(key=lambda one: -one[0])
     best = _with_shape(fitter, surface, model, masks, finer[:2]) if fit else finer[0]
