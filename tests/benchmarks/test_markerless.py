@@ -12,6 +12,7 @@ from benchmarks.markerless.measures import errors_of
 from benchmarks.markerless.page import page
 from benchmarks.markerless.real import RealOutcome
 from benchmarks.markerless.rendered import Case, Outcome
+
 from kinesphere.synthetic.film import make_film
 
 
@@ -30,7 +31,7 @@ def test_the_truth_has_no_error(film, tracked_film):
 
 def test_known_errors_are_found(film, tracked_film):
     tracked = tracked_film(film)
-    origins = tracked.origins + [0.003, 0.0, 0.004]
+    origins = tracked.origins + np.array([0.003, 0.0, 0.004])
     hand = tracked.limb_names.index("left_hand")
     origins[4:7, hand, 1] += 0.4
     parameters = tracked.parameters.copy()
