@@ -14,16 +14,20 @@ The mesh is closed, mirror-symmetric, in metres, y up, x anterior, z to the righ
 import gzip
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import fast_simplification
 import numpy as np
+import scipy.sparse
+import scipy.sparse.linalg
 import trimesh
 
 BODY_VERTICES = 13380  # of the base mesh; what follows are helpers
 HALF_FACES = 4000
 ON_PLANE = 1e-3  # dm
 STEP = 2e-5  # m
+DETAIL = 0.45  # dm; what is smaller goes
 RACES, SEXES = ("african", "asian", "caucasian"), ("female", "male")
 
 # Bone of the default rig → share of each of our limbs. Neck and lower spine bend over their length.
@@ -79,6 +83,9 @@ def main(source: Path, target: Path) -> None:
     weights = limb_weights(source, limbs)
     quads = np.array(groups["body"])
     faces = np.vstack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    both = np.vstack([faces, quads[:, [0, 1, 3]], quads[:, [1, 2, 3]]])  # mirrors itself
+    smooth = torso_smoother(mean, both, weights, limbs)
+    mean, shapes = smooth(mean), {name: smooth(delta) for name, delta in shapes.items()}
     faces = right_half(mean, without_cavities(mean, faces))
     corners, shares, faces, mirrored = simplified_half(mean, faces, weights, limbs)
 
@@ -279,6 +286,50 @@ def bone_shares(bone: str) -> dict[str, float]:
             word = {"L": "left", "R": "right"}[side]
             return {k if k == "trunk" else f"{word}_{k}": v for k, v in shares.items()}
     return {"head": 1.0}
+
+
+def torso_smoother(
+    points: np.ndarray, faces: np.ndarray, weights: np.ndarray, limbs: list[str]
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Return what takes anatomical detail off the torso, the same linear map for mean and shapes.
+
+    A low pass on the surface, (1 - (1 - S)²) with S = (M + t C)⁻¹ M of masses M and cotangents C,
+    so that what is larger than the detail keeps its size.
+    """
+    n = BODY_VERTICES
+    corners = points[faces]
+    cotangents = scipy.sparse.coo_matrix((n, n))
+    for k in range(3):
+        i, j = faces[:, (k + 1) % 3], faces[:, (k + 2) % 3]
+        a, b = corners[:, (k + 1) % 3] - corners[:, k], corners[:, (k + 2) % 3] - corners[:, k]
+        area = np.maximum(np.linalg.norm(np.cross(a, b), axis=1), 1e-9)
+        half = np.clip(np.einsum("ij,ij->i", a, b) / area, 0.0, 10.0) / 2
+        cotangents += scipy.sparse.coo_matrix((half, (i, j)), (n, n))
+    cotangents = cotangents + cotangents.T
+    mass = np.bincount(
+        faces.ravel(), np.repeat(trimesh.triangles.area(corners), 3) / 3, minlength=n
+    )
+    stiff = scipy.sparse.diags(np.asarray(cotangents.sum(axis=1)).ravel()) - cotangents
+    solve = scipy.sparse.linalg.factorized((scipy.sparse.diags(mass) + DETAIL**2 * stiff).tocsc())
+    torso = weights[:n, [limbs.index("pelvis"), limbs.index("trunk")]].sum(axis=1)
+    thighs = weights[:n, [limbs.index(f"{s}_thigh") for s in ("left", "right")]].sum(axis=1)
+    # thighs only where they meet
+    near = np.clip(1.6 - np.abs(points[:n, 0]) / 0.5, 0.0, 1.0)
+    share = np.clip(torso + thighs * near, 0.0, 1.0)[:, None]
+
+    flat = np.flatnonzero(np.abs(points[:n, 0]) <= ON_PLANE)
+
+    def low(values: np.ndarray) -> np.ndarray:
+        return np.stack([solve(mass * column) for column in values.T], axis=1)
+
+    def smooth(values: np.ndarray) -> np.ndarray:
+        once = low(values[:n])
+        out = values.copy()
+        out[:n] += share * (2 * once - low(once) - values[:n])
+        out[flat, 0] = 0.0
+        return out
+
+    return smooth
 
 
 def without_cavities(points: np.ndarray, faces: np.ndarray) -> np.ndarray:

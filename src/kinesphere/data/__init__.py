@@ -9,6 +9,8 @@ from kinesphere.data.camera import Camera as Camera
 from kinesphere.data.directions import DIRECTIONS as DIRECTIONS
 from kinesphere.data.directions import UpAxis as UpAxis
 from kinesphere.data.directions import vector_from_direction as vector_from_direction
+from kinesphere.data.gaps import held as held
+from kinesphere.data.gaps import poses_without_gaps as poses_without_gaps
 from kinesphere.data.history import History as History
 from kinesphere.data.history import Json as Json
 from kinesphere.data.history import Step as Step
@@ -30,6 +32,8 @@ from kinesphere.data.recording import Event as Event
 from kinesphere.data.recording import Output as Output
 from kinesphere.data.recording import OutputKind as OutputKind
 from kinesphere.data.recording import Recording as Recording
+from kinesphere.data.rest import default_origins as default_origins
+from kinesphere.data.rest import pivots as pivots
 from kinesphere.data.scene import BodyChoice as BodyChoice
 from kinesphere.data.scene import Footage as Footage
 from kinesphere.data.scene import Frame as Frame

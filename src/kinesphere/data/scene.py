@@ -28,7 +28,11 @@ class Frame:
     masks: tuple[Mask | None, ...]
     """(height, width) True on the person, one a camera; None where nobody gave one."""
     references: tuple[Mask | None, ...] = ()
-    """The same, to be compared with only; empty where there are none at all."""
+    """The same, to be compared with only."""
+
+    def __post_init__(self) -> None:
+        if not self.references:
+            object.__setattr__(self, "references", (None,) * len(self.images))
 
 
 class Footage(Protocol):

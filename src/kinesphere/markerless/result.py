@@ -22,6 +22,8 @@ from kinesphere.geometry.range_of_motion import range_of_motion
 from kinesphere.markerless.tracked import TrackedMotion
 
 _EMPTY = np.empty((0, 3))
+_ODD = 0.7
+"""A camera whose overlap is below this share of the usual one is doubted."""
 
 
 def motion_from_tracked(tracked: TrackedMotion, *, keep_lost: bool = False) -> Motion:
@@ -80,19 +82,6 @@ def tracking_step(tracked: TrackedMotion, cameras: tuple[str, ...]) -> Step:
     """Return what people should know of a tracked motion: overlap, support, and what was lost."""
     support = _medians(tracked.support)
     lost = tracked.lost.sum(axis=0)
-    missing = int((~tracked.solved).sum())
-    warnings = []
-    if missing:
-        warnings.append(
-            f"{missing} of {tracked.n_frames} frames have no pose: the person was out of view, or "
-            "the images told nothing"
-        )
-    for name, n in zip(tracked.limb_names, lost, strict=True):
-        if n:
-            warnings.append(
-                f"{name} is held lost in {n} of {tracked.n_frames} frames: nothing in the images "
-                "speaks for its pose there, so it has none"
-            )
     return Step(
         "tracking result",
         findings={
@@ -111,7 +100,7 @@ def tracking_step(tracked: TrackedMotion, cameras: tuple[str, ...]) -> Step:
             else None,
             "seconds_of_module": dict(tracked.seconds),
         },
-        warnings=tuple(warnings),
+        warnings=_odd_cameras(tracked.overlap, cameras),
         version=__version__,
     )
 
@@ -152,6 +141,21 @@ def _joint(tracked: TrackedMotion, i: int, solved: Mask) -> Joint:
         covariance=np.full((3, 3), np.nan),
         observability="given",
         note="the joint of the body model, fitted to the person",
+    )
+
+
+def _odd_cameras(overlap: Array, cameras: tuple[str, ...]) -> tuple[str, ...]:
+    """Return what is said of cameras that see the body elsewhere than the others do."""
+    means = [_mean(column) for column in overlap.T]
+    known = [mean for mean in means if mean is not None]
+    if len(known) < 3:
+        return ()
+    usual = float(np.median(known))
+    return tuple(
+        f"the model overlaps the person by {mean:.2f} in {name}, by {usual:.2f} in the others: its "
+        "calibration, its offset or the way its images were cropped may be wrong"
+        for name, mean in zip(cameras, means, strict=True)
+        if mean is not None and mean < _ODD * usual
     )
 
 

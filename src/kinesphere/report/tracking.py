@@ -184,7 +184,8 @@ def _curves(overlap: Array, width: int = 900, height: int = 140) -> list[str]:
                 pen = "L"
             else:
                 pen = "M"
-        curves.append(" ".join(path))
+        # a frame between gaps is a dot, not nothing
+        curves.append(" ".join(f"{step}h0.1" if step[0] == "M" else step for step in path))
     return curves
 
 

@@ -6,7 +6,16 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from kinesphere.data import bundled_body
 from kinesphere.errors import BadSetting
-from kinesphere.synthetic.film import CONDITIONS, MOVEMENTS, BodyMotion, make_film
+from kinesphere.synthetic.film import (
+    CONDITIONS,
+    MOVEMENTS,
+    BodyMotion,
+    another_person,
+    make_film,
+    stretched,
+)
+
+pytestmark = pytest.mark.slow  # rendering takes long in plain Python
 
 SMALL = {"size": (64, 48), "n_frames": 12}
 
@@ -84,7 +93,7 @@ def test_the_same_frame_looks_the_same_however_it_is_reached():
 
 def test_masks_are_where_the_person_differs_from_the_plate():
     quiet = CONDITIONS["plain"].__class__(noise=0.0, shadows=0.0)
-    film = make_film(2, "arms", conditions=quiet, plates=True, size=(160, 120), n_frames=3)
+    film = make_film(2, "arms", conditions=quiet, plates=True, size=(320, 240), n_frames=3)
     frame = film.scene.frame(1)
     assert film.scene.has_masks is False
     assert frame.masks == (None,) * 4
@@ -142,3 +151,37 @@ def test_angle_of_a_straight_and_a_square_arm():
     after = body.ends[knee] - body.joint_centres[knee]
     expected = np.arccos(before @ after / np.linalg.norm(before) / np.linalg.norm(after))
     assert motion.angle_at("left_shank")[0] == pytest.approx(expected)
+
+
+def test_another_person_is_off_in_every_measure(rng):
+    body = bundled_body()
+    other = another_person(body, rng)
+    before = np.linalg.norm(body.ends - body.joint_centres, axis=1)
+    after = np.linalg.norm(other.ends - other.joint_centres, axis=1)
+    factors = dict(zip(body.limbs, after / before, strict=True))
+    for limb in ("upper_arm", "forearm", "thigh", "shank"):
+        assert factors[f"left_{limb}"] == pytest.approx(factors[f"right_{limb}"])
+    off = np.abs(np.array(list(factors.values())) - 1)
+    assert 0.02 < off.max() < 0.17
+    assert len(np.unique(np.round(off, 6))) > 5
+    assert other.vertices[:, 1].min() == pytest.approx(body.vertices[:, 1].min())
+
+
+def test_stretched_limbs_are_as_long_and_as_thick_as_asked():
+    body = bundled_body()
+    long, thick = 1.07, 0.95
+    other = stretched(body, {"forearm": long}, {"forearm": thick})
+    i = body.limbs.index("left_forearm")
+    own = np.flatnonzero(body.weights[:, i] == 1)
+    axis = body.ends[i] - body.joint_centres[i]
+    axis = axis / np.linalg.norm(axis)
+    before = body.vertices[own] - body.joint_centres[i]
+    after = other.vertices[own] - other.joint_centres[i]
+    assert_allclose(after @ axis, long * (before @ axis), atol=1e-12)
+    across = np.eye(3) - np.outer(axis, axis)
+    assert_allclose(after @ across, thick * (before @ across), atol=1e-12)
+    hand = body.limbs.index("left_hand")
+    assert_allclose(other.ends[i], other.joint_centres[hand], atol=1e-9)
+    same = body.limbs.index("left_thigh")
+    assert_allclose(other.joint_centres[same] - other.joint_centres[0],
+                    body.joint_centres[same] - body.joint_centres[0], atol=1e-12)  # fmt: skip

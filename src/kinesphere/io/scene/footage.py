@@ -88,7 +88,7 @@ def mask_offset(masks: Stream, images: Stream, offset: int, first_mask: int | No
             first_mask = masks.first_number
         else:
             first_mask = 0
-    return offset + first_mask - masks.first_number
+    return offset + (first_mask - masks.first_number) // masks.step
 
 
 def median_plate(stream: Stream, most: int = 25) -> Image:

@@ -21,9 +21,10 @@ from kinesphere.data.directions import world_from_up
 from kinesphere.data.validation import first_problem
 from kinesphere.errors import BadScene, UnreadableFile
 from kinesphere.io.calibration import CalibratedCamera, read_calibration
+from kinesphere.io.gltf.body import read_body
 from kinesphere.io.scene.footage import RecordedFootage, mask_offset, median_plate
 from kinesphere.io.scene.spec import CameraSpec, SceneSpec
-from kinesphere.io.scene.streams import Stream, open_stream
+from kinesphere.io.scene.streams import ImageFolder, Stream, open_stream
 from kinesphere.io.scene.world import camera_in_world, settle_unit, settle_up
 from kinesphere.io.text import read_text
 
@@ -84,6 +85,7 @@ def read_scene(path: str | Path) -> Scene:
         )
         cameras.append(camera)
         warnings += scaled
+    body = _body(spec, folder)
     rate = _rate(spec, opened, path)
     first, n_frames, uneven = _span(spec, opened, path)
     warnings += uneven
@@ -131,7 +133,8 @@ def read_scene(path: str | Path) -> Scene:
         plates=tuple(_plate(one, folder) for one in opened),
         offsets=offsets,
         world_from_file=turn,
-        body=_body(spec, folder),
+        body=body,
+        surface=None if body.model in ("full", "upper") else read_body(body.model),
         start=_start(spec, turn, first, n_frames),
         has_masks=any(one.masks is not None for one in opened),
         first_frame=offsets[0],
@@ -206,14 +209,16 @@ def _calibrated(
 
 
 def _open(camera: CameraSpec, calibrated: CalibratedCamera, folder: Path) -> _Opened:
-    masks = None if camera.masks is None else open_stream(folder / camera.masks)
+    stream = open_stream(folder / camera.images)
+    step = stream.step if isinstance(stream, ImageFolder) else 1
+    masks = None if camera.masks is None else open_stream(folder / camera.masks, step)
     reference = camera.reference_masks
     return _Opened(
         spec=camera,
         calibrated=calibrated,
-        stream=open_stream(folder / camera.images),
+        stream=stream,
         masks=masks,
-        reference=None if reference is None else open_stream(folder / reference),
+        reference=None if reference is None else open_stream(folder / reference, step),
     )
 
 

@@ -62,6 +62,8 @@ class ImageFolder:
     n_frames: int
     rate: float | None = None
     notes: list[str] = field(default_factory=list)
+    step: int = 1
+    """How far numbers of successive images are apart."""
 
     def images(self, start: int, stop: int) -> Iterator[Image | None]:
         """Yield images ``start`` to before ``stop``; None for one that cannot be had."""
@@ -76,10 +78,16 @@ class ImageFolder:
                 yield None
 
 
-def open_folder(path: Path) -> ImageFolder:
+def open_folder(path: Path, step: int | None = None) -> ImageFolder:
     """Return the images of a folder, or those a pattern like ``shots/cam1_*.png`` names.
 
     In the order of the last number in their names; without numbers, by name.
+
+    Parameters
+    ----------
+    step
+        How far numbers of successive images are apart, where that is known and many may be
+        missing; otherwise the numbers tell.
 
     Raises
     ------
@@ -96,18 +104,22 @@ def open_folder(path: Path) -> ImageFolder:
     told = [n for n in numbers.values() if n is not None]
     if len(told) == len(found) and len(set(told)) == len(found):
         first = min(told)
-        step = int(np.gcd.reduce([n - first for n in told])) or 1
-        files = {(numbers[f] - first) // step: f for f in found}  # type: ignore[operator]
+        every = step or int(np.gcd.reduce([n - first for n in told])) or 1
+        files = {(numbers[f] - first) // every: f for f in found}  # type: ignore[operator]
     else:
-        first, files = 0, dict(enumerate(sorted(found)))
+        first, every, files = 0, 1, dict(enumerate(sorted(found)))
     n_frames = max(files) + 1
     notes: list[str] = []
-    if n_frames > len(files) + _LARGEST_HOLE:
+    if step is not None:
+        pass  # what is not there was not meant to be
+    elif n_frames > len(files) + _LARGEST_HOLE:
         first, n_frames, files = 0, len(found), dict(enumerate(files[k] for k in sorted(files)))
     elif n_frames > len(files):
         note(notes, f"{path}: {n_frames - len(files)} of {n_frames} images are missing in between")
     image = read_image(files[0])
-    return ImageFolder(path, files, first, (image.shape[1], image.shape[0]), n_frames, notes=notes)
+    return ImageFolder(
+        path, files, first, (image.shape[1], image.shape[0]), n_frames, notes=notes, step=every
+    )
 
 
 def _number(path: Path) -> int | None:
@@ -223,10 +235,16 @@ def _upright(frame: Any) -> Image:
     return np.ascontiguousarray(np.rot90(image, turns)) if turns else image
 
 
-def open_stream(path: Path) -> ImageFolder | Video:
-    """Return the images at a path: a folder, a pattern with ``*`` or ``?``, an image or a video."""
+def open_stream(path: Path, step: int | None = None) -> ImageFolder | Video:
+    """Return the images at a path: a folder, a pattern with ``*`` or ``?``, an image or a video.
+
+    Parameters
+    ----------
+    step
+        As in `open_folder`.
+    """
     if path.is_dir() or any(c in path.name for c in "*?["):
-        return open_folder(path)
+        return open_folder(path, step)
     if path.suffix.lower() in SUFFIXES:
         image = read_image(path)
         return ImageFolder(path, {0: path}, 0, (image.shape[1], image.shape[0]), 1)

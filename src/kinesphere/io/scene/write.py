@@ -17,7 +17,7 @@ from kinesphere.io.images import write_image
 
 KINDS = ("png", "jpg", "mkv", "mp4")
 """How images are kept: files without and with loss, a video without and with loss."""
-_CODECS = {"mkv": ("ffv1", "bgr0", {}), "mp4": ("libx264", "yuv420p", {"crf": "16"})}
+_CODECS = {"mkv": ("ffv1", "bgr0", {"g": "1"}), "mp4": ("libx264", "yuv420p", {"crf": "16"})}
 
 
 def write_scene(
@@ -75,14 +75,16 @@ def _write_images(
             if progress is not None:
                 progress("writing", frame.index, scene.n_frames)
             name = f"{frame.index:06d}"
-            references = frame.references or (None,) * len(scene.cameras)
             for c, camera in enumerate(scene.cameras):
                 image, film = frame.images[c], films[c]
                 if image is not None and film is not None:
                     film.add(image)
                 elif image is not None:
                     write_image(image, folder / camera.name / f"{name}.{kind}")
-                for what, mask in (("masks", frame.masks[c]), ("reference_masks", references[c])):
+                for what, mask in (
+                    ("masks", frame.masks[c]),
+                    ("reference_masks", frame.references[c]),
+                ):
                     if mask is not None:
                         place = folder / f"{camera.name}_{what}"
                         place.mkdir(exist_ok=True)
