@@ -186,7 +186,7 @@ def test_left_stands_beside_right(html):
 
 
 def test_warnings_are_said_once(html):
-    warnings = html.split('<section class="warnings"')[1].split("</section>")[0]
+    warnings = html.split('<details class="warnings"')[1].split("</details>")[0]
     assert warnings.count("a warning twice") == 1
     assert "2 things to know" in warnings
 

@@ -11,11 +11,23 @@ import kinesphere
 from kinesphere.data import Solution
 from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.bodies import find_bodies
+from kinesphere.report.moments import moment_rows
 from kinesphere.report.notices import names_of, notices
 from kinesphere.report.scene import scene_from_solution
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
 
-_SCRIPTS = ("unpack.js", "space.js", "figure.js", "player.js", "curves.js", "heat.js", "page.js")
+SCRIPTS = (
+    "unpack.js",
+    "space.js",
+    "figure.js",
+    "mesh.js",
+    "player.js",
+    "curves.js",
+    "pick.js",
+    "heat.js",
+    "page.js",
+)
+"""The page's own program, in the order in which the parts build on each other."""
 
 
 def report_html(solution: Solution, title: str = "") -> str:
@@ -34,7 +46,8 @@ def report_html(solution: Solution, title: str = "") -> str:
     """
     joints = joint_rows(solution)
     scene = scene_from_solution(solution)
-    script = Markup("\n".join(asset(name) for name in _SCRIPTS))
+    moments, more = moment_rows(solution)
+    script = Markup("\n".join(asset(name) for name in SCRIPTS))
     page = environment().from_string(asset("page.html.j2"))
     return page.render(
         title=title or "Solved motion",
@@ -46,6 +59,8 @@ def report_html(solution: Solution, title: str = "") -> str:
         limbs=limb_rows(solution),
         steps=step_cards(solution),
         bodies=bodies_section(solution),
+        moments=moments,
+        moments_more=more,
         stride=scene["stride"],
         shown_rate=f"{scene['rate']:g}",
         style=Markup(asset("page.css")),

@@ -5,8 +5,9 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from kinesphere.data import Array, Codes, Joint, JointFlag, Mask, Skeleton, Solution
+from kinesphere.data import Array, Codes, Joint, JointFlag, Skeleton, Solution
 from kinesphere.report.bodies import marker_colours
+from kinesphere.report.moments import Moment, find_moments, most_telling, runs
 from kinesphere.report.packing import pack
 
 SCREEN_RATE = 60.0
@@ -34,6 +35,7 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
     """
     motion, parameters, recording = solution.motion, solution.parameters, solution.recording
     stride = frame_stride(motion.n_frames, motion.rate)
+    moments = find_moments(solution)
     shown = np.arange(0, motion.n_frames, stride)
     columns = _shown_markers(solution)
     colours = marker_colours(solution)
@@ -61,17 +63,45 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
             "twists": pack(np.rad2deg(parameters.twists[shown]), _ANGLE_STEP),
             "joint_residuals": pack(parameters.residuals[shown] * 1e3, _RESIDUAL_STEP),
             "limb_residuals": pack(motion.residuals[shown] * 1e3, _RESIDUAL_STEP),
+            "missing": pack(_missing(solution, stride), 0.5),
         },
         "moving": [runs(column) for column in parameters.moving[shown].T],
-        "flags": [_flag_runs(column) for column in parameters.flags[shown].T],
+        "flags": [_flag_runs(column) for column in _any(parameters.flags, stride).T],
+        "moments": [_moment(m, stride, columns) for m in most_telling(moments)],
+        "improbable": [
+            [m.first // stride, -(-m.end // stride)] for m in moments if m.kind == "improbable"
+        ],
         "measured_s": [_measured(solution, joint) for joint in solution.skeleton.joints],
     }
 
 
-def runs(mask: Mask) -> list[list[int]]:
-    """Return [first, end) of every stretch of True in a mask (n_frames,)."""
-    edges = np.flatnonzero(np.diff(np.r_[False, np.asarray(mask, dtype=bool), False].astype(int)))
-    return [[int(a), int(b)] for a, b in edges.reshape(-1, 2)]
+def _moment(moment: Moment, stride: int, columns: list[int]) -> dict[str, Any]:
+    kind, index = moment.about or ("", 0)
+    if kind == "marker":  # a marker never seen is not in the page
+        kind, index = ("marker", columns.index(index)) if index in columns else ("", 0)
+    first = moment.first // stride
+    return {
+        "first": first,
+        "end": max(first + 1, -(-moment.end // stride)),
+        "kind": moment.kind,
+        "about": [kind, index] if kind else None,
+    }
+
+
+def _any(codes: Codes, stride: int) -> Codes:
+    """Return the flags of every ``stride`` frames together: none is lost by thinning."""
+    starts = np.arange(0, len(codes), stride)
+    return np.bitwise_or.reduceat(codes, starts, axis=0) if len(codes) else codes
+
+
+def _missing(solution: Solution, stride: int) -> Array:
+    """Return how many markers that limbs wear are unseen, at most, in each frame of the page."""
+    recording = solution.recording
+    worn = {label for limb in solution.skeleton.limbs for label in limb.markers}
+    columns = [i for i, label in enumerate(recording.labels) if label in worn]
+    counts = (~recording.seen[:, columns]).sum(axis=1, dtype=np.float64)
+    starts = np.arange(0, len(counts), stride)
+    return np.asarray(np.maximum.reduceat(counts, starts) if len(counts) else counts)[:, None]
 
 
 def _measured(solution: Solution, joint: Joint) -> list[list[float]]:
@@ -108,6 +138,7 @@ def _limbs(skeleton: Skeleton) -> list[dict[str, Any]]:
             {
                 "name": limb.name,
                 "side": side_of(limb.name),
+                "parent": int(skeleton.parents[i]),
                 "near": _numbers(near),
                 "far": [_numbers(point) for point in below],
                 "length": limb.length if np.isfinite(limb.length) else None,

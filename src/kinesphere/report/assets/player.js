@@ -5,7 +5,12 @@ class Player extends Figure {
     Object.assign(this, { canvas, theme });
     this.context = canvas.getContext("2d");
     this.camera = new Camera();
-    this.show = { markers: true, bones: true, axes: false, frames: false, names: false };
+    this.body = BodyMesh.of(scene, data);
+    this.picker = new Picker(this);
+    this.picked = null;
+    this.pointed = null;
+    this.onpick = () => {};
+    this.show = { markers: true, bones: true, mesh: Boolean(this.body), axes: false, frames: false, names: false };
     this.follow = true;
     this.frame = this.firstSeen();
     this.home = this.centreAt(this.frame) || [0, 0.95, 0];
@@ -32,19 +37,29 @@ class Player extends Figure {
   listen() {
     const held = new Map();
     const canvas = this.canvas;
+    let travelled = 0;
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
+      travelled = held.size ? Infinity : 0;
       held.set(event.pointerId, [event.offsetX, event.offsetY]);
     });
     const release = (event) => held.delete(event.pointerId);
-    canvas.addEventListener("pointerup", release);
+    canvas.addEventListener("pointerup", (event) => {
+      release(event); // a press that went nowhere points at something
+      if (travelled < 5) this.onpick(this.picker.nearest(event.offsetX, event.offsetY));
+    });
+    canvas.addEventListener("pointerleave", () => this.pointAt(null));
     canvas.addEventListener("pointercancel", release);
     canvas.addEventListener("pointermove", (event) => {
       const before = held.get(event.pointerId);
-      if (!before) return;
+      if (!before) {
+        if (event.pointerType === "mouse") this.pointAt(this.picker.nearest(event.offsetX, event.offsetY));
+        return;
+      }
       const now = [event.offsetX, event.offsetY];
       const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
+      travelled += Math.hypot(dx, dy);
       if (held.size === 2) {
         const [other] = [...held].filter(([id]) => id !== event.pointerId).map(([, p]) => p);
         const apart = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
@@ -53,8 +68,7 @@ class Player extends Figure {
       } else if (event.shiftKey || event.buttons & 6) {
         this.camera.pan(dx, dy);
       } else {
-        this.camera.yaw -= dx * 0.008;
-        this.camera.pitch = Math.max(-1.5, Math.min(1.55, this.camera.pitch + dy * 0.008));
+        this.orbit(-dx * 0.008, dy * 0.008);
       }
       held.set(event.pointerId, now);
       this.draw();
@@ -65,6 +79,16 @@ class Player extends Figure {
       this.draw();
     }, { passive: false });
     canvas.addEventListener("dblclick", () => this.reset());
+  }
+  orbit(yaw, pitch) {
+    this.camera.yaw += yaw;
+    this.camera.pitch = Math.max(-1.5, Math.min(1.55, this.camera.pitch + pitch));
+  }
+  pointAt(pointed) {
+    if (this.picker.name(pointed) === this.picker.name(this.pointed)) return;
+    this.pointed = pointed;
+    this.canvas.classList.toggle("pointing", Boolean(pointed));
+    this.draw();
   }
   zoom(k) {
     this.camera.distance = Math.max(0.3, Math.min(40, this.camera.distance * k));
@@ -86,17 +110,31 @@ class Player extends Figure {
     if (this.follow) this.camera.target = this.centreAt(frame) || this.camera.target;
     this.camera.aim(width, height);
     const poses = this.scene.limbs.map((_, i) => this.pose(i, frame));
-    const bones = this.show.bones ? this.bones(poses) : [];
+    this.posesNow = poses;
+    const sticks = this.bones(poses);
+    const bones = this.show.bones ? sticks : [];
     this.paintFloor();
-    this.paintShadow(bones);
+    this.paintShadow(sticks);
+    this.paintBody(poses, width, height, ratio);
     const items = [];
     if (this.show.bones) this.addTrunks(items, bones);
     for (const bone of bones) this.addBone(items, bone);
     if (this.show.markers) this.addMarkers(items, frame);
     if (this.show.frames) this.addFrames(items, poses);
-    if (this.show.axes) this.addAxes(items, poses);
+    this.addAxes(items, poses);
     items.sort((a, b) => b.depth - a.depth).forEach((item) => item.paint());
     if (this.show.names) this.paintNames(bones, frame);
+    this.paintPicked(poses, frame);
+  }
+  paintBody(poses, width, height, ratio) {
+    if (!this.show.mesh || !this.body) return;
+    const { context, camera, theme, picked } = this;
+    const limb = picked && picked.kind !== "marker" ? picked.index + (picked.kind === "joint") : -1;
+    const body = this.body.draw(poses, camera, width, height, ratio, theme, limb);
+    if (!body) return;
+    context.globalAlpha = this.show.bones ? 0.55 : 1;
+    context.drawImage(body, 0, 0, width, height);
+    context.globalAlpha = 1;
   }
   paintFloor() {
     const { context, camera, theme } = this;
@@ -261,7 +299,8 @@ class Player extends Figure {
   }
   addAxes(items, poses) {
     const length = 0.08 * this.height();
-    this.scene.joints.forEach((joint) => {
+    this.scene.joints.forEach((joint, index) => {
+      if (!this.show.axes && !(this.picked?.kind === "joint" && this.picked.index === index)) return;
       const pose = poses[joint.parent];
       if (!pose || joint.centre.includes(null)) return;
       const centre = this.place(pose, joint.centre);
@@ -271,6 +310,47 @@ class Player extends Figure {
         this.addArrow(items, add(centre, scaled(way, -0.6)), add(centre, way), this.theme.series[i], 2.4);
       });
     });
+  }
+  /* A ring and a name on what is picked or pointed at; where a picked one was and goes, 1 s either way. */
+  paintPicked(poses, frame) {
+    const { context, camera, theme, scene } = this;
+    const place = (picked, f, posed) => {
+      if (picked.kind === "marker") return this.point("markers", picked.index, f);
+      if (picked.kind === "limb") return posed[picked.index] && posed[picked.index].origin;
+      const at = scene.joints[picked.index].parent;
+      return this.jointCentre(picked.index, posed || { [at]: this.pose(at, f) });
+    };
+    if (this.picked && this.picked.kind !== "limb") {
+      const reach = Math.round(scene.rate);
+      const step = Math.max(1, Math.round(reach / 60));
+      context.lineWidth = 1.6;
+      context.strokeStyle = theme.accent;
+      let before = null;
+      for (let f = frame - reach; f <= frame + reach; f += step) {
+        const at = f >= 0 && f < scene.n_frames ? place(this.picked, f) : null;
+        const now = at && camera.project(at);
+        if (now && before) {
+          context.globalAlpha = 0.9 * (1 - Math.abs(f - frame) / (reach + 1));
+          context.beginPath();
+          context.moveTo(before[0], before[1]);
+          context.lineTo(now[0], now[1]);
+          context.stroke();
+        }
+        before = now;
+      }
+      context.globalAlpha = 1;
+    }
+    for (const picked of [this.pointed, this.picked]) {
+      const at = picked && place(picked, frame, poses);
+      const p = at && camera.project(at);
+      if (!p) continue;
+      context.strokeStyle = theme.accent;
+      context.lineWidth = 2;
+      context.beginPath();
+      context.arc(p[0], p[1], Math.max(6, 0.03 * p[2]), 0, 2 * Math.PI);
+      context.stroke();
+      this.paintName(this.picker.name(picked), [p[0] + 6, p[1] - 6], "600 12px", theme.text, []);
+    }
   }
   /* Limbs first, then markers from near to far; a name that finds no free place stays away. */
   paintNames(bones, frame) {
