@@ -1,3 +1,9 @@
 """Solved motion changed by its joint parameters."""
 
+from kinesphere.editing.apply import Moves as Moves
 from kinesphere.editing.apply import apply_edits as apply_edits
+from kinesphere.editing.apply import find_moves as find_moves
+from kinesphere.editing.apply import moved_markers as moved_markers
+from kinesphere.editing.apply import moved_poses as moved_poses
+from kinesphere.editing.parameters import edit_parameters as edit_parameters
+from kinesphere.editing.weights import edit_weights as edit_weights

@@ -1,4 +1,4 @@
-"""Where to look: gaps, poses that are hard to believe, and the file's own events, on the time line."""
+"""Where to look: gaps, poses hard to believe, and the file's own events, on the time line."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class Moment:
     """``event``, ``gap``, ``pose`` or ``improbable``."""
     what: str
     about: tuple[str, int] | None = None
-    """What the player picks: ``("joint", index)``, ``("marker", column)`` or ``("limb", index)``."""
+    """What the player picks: ``joint``, ``marker`` (its column) or ``limb``, and the index."""
 
 
 def find_moments(solution: Solution) -> list[Moment]:
