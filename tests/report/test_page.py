@@ -23,7 +23,6 @@ from kinesphere.report.scene import (
     scene_from_solution,
 )
 
-
 HOSTILE = "</script><script>alert(1)</script>"
 MILLIMETRE = 1e-3
 HUNDREDTH_DEGREE = 0.02  # deg; quaternions are rounded to 1e-4, that is 0.01° a component

@@ -12,6 +12,7 @@ from kinesphere.cli.label import label
 from kinesphere.cli.learn import model
 from kinesphere.cli.settings import settings
 from kinesphere.cli.solve import solve
+from kinesphere.cli.view import view
 
 app = typer.Typer(
     name="kinesphere",
@@ -50,5 +51,5 @@ def kinesphere(
         typer.echo(context.get_help())
 
 
-for command in (demo, info, label, solve, edit, convert, model, settings):
+for command in (demo, info, label, solve, view, edit, convert, model, settings):
     app.command()(command)

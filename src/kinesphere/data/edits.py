@@ -83,3 +83,10 @@ def frames_in_words(edit: Edit) -> str:
     if edit.seconds is not None:
         return f"{edit.seconds[0]:g}–{edit.seconds[1]:g} s"
     return "all frames"
+
+
+def edit_in_words(edit: Edit) -> str:
+    """Return an edit as one line: ``left elbow, axis 1: +30°, frames 100–200``."""
+    axis = f"axis {edit.axis}" if isinstance(edit.axis, int) else edit.axis
+    name = edit.joint.replace("_", " ")
+    return f"{name}, {axis}: {change_in_words(edit)}, {frames_in_words(edit)}"

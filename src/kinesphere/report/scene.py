@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array, Codes, Joint, JointFlag, Skeleton, Solution
+from kinesphere.data.sticks import side_of, sticks_of
 from kinesphere.report.bodies import marker_colours
 from kinesphere.report.moments import Moment, find_moments, most_telling, runs
 from kinesphere.report.packing import pack
@@ -126,21 +127,16 @@ def _shown_markers(solution: Solution) -> list[int]:
 
 
 def _limbs(skeleton: Skeleton) -> list[dict[str, Any]]:
-    """Return of each limb the polyline its bone is drawn by, in limb coordinates."""
+    """Return of each limb the sticks it is drawn by, in limb coordinates."""
     drawn = []
-    for i, limb in enumerate(skeleton.limbs):
-        below = [j.centre_in_parent for j in skeleton.joints if j.parent == limb.name]
-        near = np.zeros(3) if i == 0 else skeleton.joints[i - 1].centre_in_child
-        if not below:
-            length = limb.length if np.isfinite(limb.length) else _reach(limb.marker_positions)
-            below = [near + limb.long_axis * length]
+    for i, (limb, sticks) in enumerate(zip(skeleton.limbs, sticks_of(skeleton), strict=True)):
         drawn.append(
             {
                 "name": limb.name,
                 "side": side_of(limb.name),
                 "parent": int(skeleton.parents[i]),
-                "near": _numbers(near),
-                "far": [_numbers(point) for point in below],
+                "near": _numbers(sticks[0].near),
+                "far": [_numbers(stick.far) for stick in sticks],
                 "length": limb.length if np.isfinite(limb.length) else None,
             }
         )
@@ -158,17 +154,6 @@ def _joints(skeleton: Skeleton) -> list[dict[str, Any]]:
         }
         for joint in skeleton.joints
     ]
-
-
-def side_of(name: str) -> str:
-    """Return ``left``, ``right`` or ``middle`` by the name of a limb or joint."""
-    return next((side for side in ("left", "right") if name.startswith(f"{side}_")), "middle")
-
-
-def _reach(positions: Array) -> float:
-    if len(positions) < 2:
-        return 0.1
-    return float(np.linalg.norm(np.ptp(positions, axis=0)))
 
 
 def _quaternions(rotations: Array) -> Array:

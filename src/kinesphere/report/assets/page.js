@@ -33,6 +33,7 @@ async function start() {
   const last = Math.max(0, scene.n_frames - 1);
   const view = new TimeView(last / scene.rate);
   const player = new Player($("#stage"), scene, data, theme);
+  $("#stage").player = player; // for whoever scripts the page
   const charts = [...document.querySelectorAll(".chart")].map(
     (element) => new Chart(element, Number(element.dataset.joint), scene, data, view, theme));
   const heat = new TimeLine($("#heat"), scene, data, view, theme);
