@@ -22,10 +22,14 @@ if TYPE_CHECKING:
     from kinesphere.data import Recording as Recording
     from kinesphere.data import Skeleton as Skeleton
     from kinesphere.data import Solution as Solution
+    from kinesphere.data import Surface as Surface
     from kinesphere.data import TopologicalModel as TopologicalModel
+    from kinesphere.data import bundled_body as bundled_body
     from kinesphere.data import motion_from_parameters as motion_from_parameters
     from kinesphere.data.edits import Edit as Edit
     from kinesphere.editing import apply_edits as apply_edits
+    from kinesphere.editing import attach_surface as attach_surface
+    from kinesphere.editing import skin as skin
     from kinesphere.errors import KinesphereError as KinesphereError
     from kinesphere.io import read as read
     from kinesphere.io import write as write
@@ -42,10 +46,10 @@ except PackageNotFoundError:  # run from a source tree that nobody installed
 _ROOMS = {
     "data": (
         "Analog Event Joint Limb Motion Output Parameters Recording Skeleton Solution "
-        "TopologicalModel motion_from_parameters"
+        "Surface TopologicalModel bundled_body motion_from_parameters"
     ),
     "data.edits": "Edit",
-    "editing": "apply_edits",
+    "editing": "apply_edits attach_surface skin",
     "errors": "KinesphereError",
     "io": "read write",
     "labelling": "label",

@@ -107,6 +107,16 @@ register(
 )
 register(
     Format(
+        name="glTF",
+        suffixes=(".glb", ".gltf"),
+        writers={
+            "Motion": "kinesphere.io.gltf:write_gltf",
+            "Solution": "kinesphere.io.gltf:write_solution_gltf",
+        },
+    )
+)
+register(
+    Format(
         name="limb frame table",
         suffixes=(".limbs.csv",),
         writers={"Motion": "kinesphere.io.limbs_csv:write_limbs"},

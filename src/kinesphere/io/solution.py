@@ -11,6 +11,7 @@ from kinesphere.errors import BadSetting, UnreadableFile
 from kinesphere.io.atomic import check_directory_place, replacing_directory
 from kinesphere.io.bvh import write_bvh
 from kinesphere.io.c3d import read_c3d, write_c3d
+from kinesphere.io.gltf import write_solution_gltf
 from kinesphere.io.opensim import write_osim
 from kinesphere.io.opensim_joints import opensim_name
 from kinesphere.io.opensim_motion import write_mot
@@ -27,6 +28,7 @@ FILES = (
     "skeleton.json",
     "parameters.csv",
     "motion.bvh",
+    "motion.glb",
     "motion.trc",
     "motion.mot",
     "motion.osim",
@@ -70,6 +72,7 @@ def write_solution(
         write_skeleton(skeleton, folder / "skeleton.json")
         write_parameters(solution.parameters, folder / "parameters.csv")
         write_bvh(solution.motion, folder / "motion.bvh")
+        write_solution_gltf(solution, folder / "motion.glb")
         write_trc(_model_markers(solution), folder / "motion.trc")
         write_mot(solution.parameters, folder / "motion.mot")
         write_osim(skeleton, folder / "motion.osim")
