@@ -10,6 +10,7 @@ from kinesphere.data.sticks import side_of, sticks_of
 from kinesphere.report.bodies import marker_colours
 from kinesphere.report.moments import Moment, find_moments, most_telling, runs
 from kinesphere.report.packing import pack
+from kinesphere.report.surface import pack_surface
 
 SCREEN_RATE = 60.0
 """Hz; a screen shows no more."""
@@ -37,6 +38,7 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
     motion, parameters, recording = solution.motion, solution.parameters, solution.recording
     stride = frame_stride(motion.n_frames, motion.rate)
     moments = find_moments(solution)
+    mesh, mesh_arrays = pack_surface(solution.surface, solution.skeleton)
     shown = np.arange(0, motion.n_frames, stride)
     columns = _shown_markers(solution)
     colours = marker_colours(solution)
@@ -56,7 +58,9 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
         ],
         "limbs": _limbs(solution.skeleton),
         "joints": _joints(solution.skeleton),
+        "mesh": mesh,
         "arrays": {
+            **mesh_arrays,
             "markers": pack(recording.markers[shown][:, columns], _POSITION_STEP),
             "origins": pack(motion.origins[shown], _POSITION_STEP),
             "quaternions": pack(_quaternions(motion.rotations[shown]), _QUATERNION_STEP),

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from kinesphere.data import Array, Skeleton
+from kinesphere.data import Array, Skeleton, Surface, default_origins
 from kinesphere.data.sticks import side_of
-from kinesphere.viewer.figure import Figure, Placed, markers_placed
+from kinesphere.viewer.figure import Figure, Placed, markers_placed, wxyz_from_rotations
 from kinesphere.viewer.shapes import arrow, ball, bone
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 SIDES = {"left": (59, 91, 219), "right": (217, 72, 15), "middle": (137, 148, 168)}
 AXES = ((232, 89, 12), (16, 152, 173), (156, 54, 181))
 PICKED = (250, 176, 5)
+BODY, BODY_OPACITY = (196, 203, 214), 0.5
 MARKER, LOOSE = {False: (44, 54, 78), True: (236, 240, 248)}, (150, 156, 168)
 _GRIDS = {
     False: ((214, 219, 228), (176, 184, 198)),
@@ -40,6 +41,7 @@ class Stage:
         centre: Array,
         floor: float,
         *,
+        surface: Surface | None = None,
         dark: bool = False,
     ) -> None:
         self.server = server
@@ -69,6 +71,8 @@ class Stage:
         arrows = np.array([AXES[k] for k in self.figure.axis_numbers]).reshape(-1, 3)
         if len(arrows):
             self._add("axes", arrow(), len(arrows), arrows, flat=False)
+        if surface is not None:
+            self._add_body(surface, skeleton)
         n = len(skeleton.limbs)
         self._nodes["frames"] = scene.add_batched_axes(
             "/frames", np.tile((1.0, 0, 0, 0), (n, 1)), np.zeros((n, 3)),
@@ -85,6 +89,23 @@ class Stage:
             receive_shadow=False,
         )  # fmt: skip
 
+    def _add_body(self, surface: Surface, skeleton: Skeleton) -> None:
+        self.kinds["mesh"] = True
+        n = len(skeleton.limbs)
+        self._nodes["mesh"] = self.server.scene.add_mesh_skinned(
+            "/mesh", surface.vertices, surface.faces, bone_wxyzs=np.tile((1.0, 0, 0, 0), (n, 1)),
+            bone_positions=default_origins(skeleton), skin_weights=surface.weights, color=BODY,
+            opacity=BODY_OPACITY, cast_shadow=False, receive_shadow=False,
+        )  # fmt: skip
+
+    def _pose_body(self, rotations: Array, origins: Array) -> None:
+        """Turn the body's limbs; one without a pose stays where it was in the scene."""
+        known = np.isfinite(rotations).all(axis=(1, 2)) & np.isfinite(origins).all(axis=1)
+        wxyzs = wxyz_from_rotations(rotations)
+        for limb in np.flatnonzero(known):
+            bone = self._nodes["mesh"].bones[limb]
+            bone.wxyz, bone.position = wxyzs[limb], origins[limb]
+
     def show(self, shown: Shown) -> None:
         """Move everything on view to a pose."""
         rotations, origins, markers = shown
@@ -93,6 +114,8 @@ class Stage:
                 self._place("markers", markers_placed(markers, MARKER_RADIUS))
             if self.figure is None or rotations is None or origins is None:
                 return
+            if self._on("mesh"):
+                self._pose_body(rotations, origins)
             for name, of in (
                 ("skeleton", self.figure.sticks),
                 ("frames", self.figure.frames),

@@ -41,8 +41,9 @@ class Viewer:
         self.shown = 0
         """Frames shown so far while playing."""
         self.stage = Stage(
-            server, take.skeleton, recording.labels, take.middle(), take.floor(), dark=dark
-        )
+            server, take.skeleton, recording.labels, take.middle(), take.floor(),
+            surface=None if take.solution is None else take.solution.surface, dark=dark,
+        )  # fmt: skip
         self.panel = Panel(
             server,
             (self.first, recording.n_frames, self.rate),

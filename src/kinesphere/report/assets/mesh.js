@@ -2,7 +2,7 @@
    the player paints that picture between the floor and the sticks. Without WebGL there is none. */
 const MESH_VERTEX = `#version 300 es
 precision highp float;
-uniform vec4 limbs[LIMBS * 3];
+uniform vec4 limbs[LIMBS * 2]; // a unit dual quaternion each
 uniform vec3 eye, right, up, back;
 uniform vec2 focal, depths;
 uniform float picked;
@@ -10,14 +10,21 @@ in vec3 at, normal;
 in vec4 limb, weight;
 out vec3 facing;
 out float hot;
-void main() {
-  vec4 rows[3];
-  for (int r = 0; r < 3; r++)
-    rows[r] = weight.x * limbs[3 * int(limb.x) + r] + weight.y * limbs[3 * int(limb.y) + r]
-      + weight.z * limbs[3 * int(limb.z) + r] + weight.w * limbs[3 * int(limb.w) + r];
-  vec4 p = vec4(at, 1.0);
-  vec3 d = vec3(dot(rows[0], p), dot(rows[1], p), dot(rows[2], p)) - eye;
-  vec3 n = normalize(vec3(dot(rows[0].xyz, normal), dot(rows[1].xyz, normal), dot(rows[2].xyz, normal)));
+vec3 turned(vec4 q, vec3 p) { return p + 2.0 * cross(q.xyz, cross(q.xyz, p) + q.w * p); }
+void main() { // screws blended by their shares, each on the side of the first (Kavan et al. 2008)
+  vec4 first = limbs[2 * int(limb.x)];
+  vec4 q = vec4(0.0), e = vec4(0.0);
+  for (int k = 0; k < 4; k++) {
+    vec4 one = limbs[2 * int(limb[k])];
+    float share = dot(one, first) < 0.0 ? -weight[k] : weight[k];
+    q += share * one;
+    e += share * limbs[2 * int(limb[k]) + 1];
+  }
+  float size = length(q);
+  q /= size;
+  e /= size;
+  vec3 d = turned(q, at) + 2.0 * (q.w * e.xyz - e.w * q.xyz + cross(q.xyz, e.xyz)) - eye;
+  vec3 n = turned(q, normalize(normal));
   facing = vec3(dot(n, right), dot(n, up), dot(n, back));
   hot = dot(weight, vec4(equal(limb, vec4(picked))));
   float depth = -dot(d, back);
@@ -43,7 +50,7 @@ class BodyMesh {
     if (!scene.mesh) return null;
     const canvas = document.createElement("canvas");
     const gl = canvas.getContext("webgl2", { alpha: true, antialias: true, premultipliedAlpha: true });
-    if (!gl || gl.getParameter(gl.MAX_VERTEX_UNIFORM_VECTORS) < 3 * scene.limbs.length + 8) return null;
+    if (!gl || gl.getParameter(gl.MAX_VERTEX_UNIFORM_VECTORS) < 2 * scene.limbs.length + 10) return null;
     try {
       return new BodyMesh(canvas, gl, scene, data);
     } catch {
@@ -57,7 +64,7 @@ class BodyMesh {
     const at = table("mesh_vertices", 3);
     const faces = Uint32Array.from(table("mesh_faces", 3), Math.round);
     this.count = faces.length;
-    this.matrices = new Float32Array(12 * scene.limbs.length);
+    this.screws = new Float32Array(8 * scene.limbs.length);
     gl.useProgram(this.program);
     this.attribute("at", at, 3);
     this.attribute("normal", BodyMesh.normals(at, faces), 3);
@@ -106,21 +113,21 @@ class BodyMesh {
     gl.enableVertexAttribArray(place);
     gl.vertexAttribPointer(place, size, gl.FLOAT, false, 0, 0);
   }
-  /* world_from_limb · limb_from_bind of each limb; one without a pose goes with its parent. */
+  /* From where each limb was bound to where it is; one without a pose goes with its parent. */
   carry(poses) {
     this.scene.limbs.forEach((limb, i) => {
-      const rows = this.matrices.subarray(12 * i, 12 * i + 12);
+      const screw = this.screws.subarray(8 * i, 8 * i + 8);
       if (!poses[i]) {
-        rows.set(this.matrices.subarray(12 * limb.parent, 12 * limb.parent + 12));
+        screw.set(this.screws.subarray(8 * limb.parent, 8 * limb.parent + 8));
         return;
       }
-      const { origin, quaternion } = poses[i];
-      const bind = this.scene.mesh.bind[i]; // 12 numbers: the rows of limb_from_bind
-      const columns = [0, 1, 2, 3].map((c) => turned(quaternion, [bind[c], bind[4 + c], bind[8 + c]]));
-      for (let r = 0; r < 3; r++)
-        for (let c = 0; c < 4; c++) rows[4 * r + c] = columns[c][r] + (c === 3 ? origin[r] : 0);
+      const [x, y, z, w] = poses[i].quaternion;
+      const [a, b, c] = add(poses[i].origin, scaled(turned([x, y, z, w], this.scene.mesh.rest[i]), -1));
+      screw.set([x, y, z, w,
+        (a * w + b * z - c * y) / 2, (b * w + c * x - a * z) / 2, (c * w + a * y - b * x) / 2,
+        -(a * x + b * y + c * z) / 2]);
     });
-    return this.matrices;
+    return this.screws;
   }
   /* Return a canvas with the body as the camera sees it; null if there is nothing to see. */
   draw(poses, camera, width, height, ratio, theme, picked) {
