@@ -194,3 +194,25 @@ def test_a_phone_scrolls_one_way_only(report):
     page = report(viewport={"width": 390, "height": 844}, has_touch=True).page
     wide = "document.documentElement.scrollWidth"
     assert page.evaluate(wide) <= 390
+
+
+NO_WEBGL = """
+const had = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+  return kind.startsWith("webgl") ? null : had.call(this, kind, ...rest);
+};
+"""
+
+
+def test_the_body_is_shown_where_the_browser_can(report):
+    watched = report()
+    body = watched.page.locator('[data-show="mesh"]')
+    assert body.get_attribute("aria-pressed") == "true"
+    seen = stage(watched.page)
+    watched.page.keyboard.press("o")
+    assert body.get_attribute("aria-pressed") == "false"
+    assert stage(watched.page) != seen
+    without = report(before=NO_WEBGL)
+    assert without.complaints == []
+    assert not without.page.locator('[data-show="mesh"]').is_visible()
+    assert without.page.locator("#stage").evaluate(PAINTED)

@@ -63,6 +63,8 @@ def bend_the_elbow(watched, until):
     type_in(page, "to", 200)
     type_in(page, "Frame", 150)
     until(lambda: watched.viewer.frame == 149)
+    panel = watched.viewer.panel  # each field reports by itself, in its own time
+    until(lambda: (panel.start.value, panel.end.value) == (100, 200))
     type_in(page, "axis 1 (°)", 30)
     until(lambda: [edit.add_deg for edit in posing.session.edits] == [30.0])
 

@@ -43,11 +43,18 @@ def ring(tube: float, sides: int = 48, around: int = 8) -> Mesh:
 
 def _turned(profile: tuple[tuple[float, float], ...], sides: int) -> Mesh:
     """Return the surface that a line of (x, radius) makes when it is turned about x."""
-    around = 2 * np.pi * np.arange(sides) / sides
-    vertices = np.array([(x, r * np.cos(t), r * np.sin(t)) for x, r in profile for t in around])
+    turns = 2 * np.pi * np.arange(sides) / sides
+    points = np.array([(x, r * np.cos(t), r * np.sin(t)) for x, r in profile for t in turns])
     faces = []
-    for ring in range(len(profile) - 1):
+    for circle in range(len(profile) - 1):
         for k in range(sides):
-            a, b = ring * sides + k, ring * sides + (k + 1) % sides
+            a, b = circle * sides + k, circle * sides + (k + 1) % sides
             faces += [(a, b, b + sides), (a, b + sides, a + sides)]
-    return vertices, np.array(faces, dtype=np.uint32)[:, ::-1]
+    # a circle without radius is one point, and a line that ends where it began meets itself
+    _, first, same = np.unique(
+        np.round(points, 9) + 0.0, axis=0, return_index=True, return_inverse=True
+    )
+    joined = same.reshape(-1)[np.array(faces)]
+    a, b, c = joined.T
+    joined = joined[(a != b) & (b != c) & (c != a)]
+    return points[first], joined.astype(np.uint32)
