@@ -114,7 +114,7 @@ class Player extends Figure {
     const sticks = this.bones(poses);
     const bones = this.show.bones ? sticks : [];
     this.paintFloor();
-    this.paintShadow(sticks);
+    this.paintShadow(this.show.bones || (this.show.mesh && this.body) ? sticks : []);
     this.paintBody(poses, width, height, ratio);
     const items = [];
     if (this.show.bones) this.addTrunks(items, bones);
