@@ -29,11 +29,11 @@ def page(results: dict[str, Any]) -> str:
         "",
         "## Opening and playing",
         "",
-        "The viewer is *served* when `kinesphere view` has read the solved folder and said where it",
-        f"is (aim: under {MOST_OPEN_S:.0f} s), *open* when the page has its controls. *Sent* are the",
-        "poses that leave the server each second, at most 60; *drawn* is how often the page paints,",
-        "which a graphics card does at the rate of the screen. *Alone* is what the server does with",
-        "no page open, and what a pose costs it in processor time.",
+        "The viewer is *served* when `kinesphere view` has read the solved folder and said where",
+        f"it is (aim: under {MOST_OPEN_S:.0f} s), *open* when the page has its controls. *Sent* are",
+        "the poses that leave the server each second, at most 60; *drawn* is how often the page",
+        "paints, which a graphics card does at the rate of the screen. *Alone* is what the server",
+        "does with no page open, and what a pose costs it in processor time.",
         "",
         "| | take | served, s | open, s | sent, Hz | drawn, Hz | alone, Hz | pose, ms |",
         "|---|---|---:|---:|---:|---:|---:|---:|",
@@ -50,8 +50,8 @@ def page(results: dict[str, Any]) -> str:
     edits = results["edits"]
     lines += [
         "",
-        f"An edit of all 24,000 frames is seen {1e3 * edits['seen_s']:.0f} ms after the slider moved;",
-        f"the next 64 frames are worked out in {1e3 * edits['chunk_s']:.0f} ms.",
+        f"An edit of all 24,000 frames is seen {1e3 * edits['seen_s']:.0f} ms after the slider",
+        f"moved; the next 64 frames are worked out in {1e3 * edits['chunk_s']:.0f} ms.",
         "",
     ]
     return "\n".join(lines)

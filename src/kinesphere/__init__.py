@@ -12,6 +12,8 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from kinesphere.comparison import Comparison as Comparison
+    from kinesphere.comparison import compare as compare
     from kinesphere.data import Analog as Analog
     from kinesphere.data import Event as Event
     from kinesphere.data import Joint as Joint
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
     from kinesphere.data import bundled_body as bundled_body
     from kinesphere.data import motion_from_parameters as motion_from_parameters
     from kinesphere.data.edits import Edit as Edit
+    from kinesphere.data.isb import IsbAngles as IsbAngles
+    from kinesphere.data.isb import isb_angles as isb_angles
     from kinesphere.editing import apply_edits as apply_edits
     from kinesphere.editing import attach_surface as attach_surface
     from kinesphere.editing import skin as skin
@@ -44,11 +48,13 @@ except PackageNotFoundError:  # run from a source tree that nobody installed
     __version__ = "0+unknown"
 
 _ROOMS = {
+    "comparison": "Comparison compare",
     "data": (
         "Analog Event Joint Limb Motion Output Parameters Recording Skeleton Solution "
         "Surface TopologicalModel bundled_body motion_from_parameters"
     ),
     "data.edits": "Edit",
+    "data.isb": "IsbAngles isb_angles",
     "editing": "apply_edits attach_surface skin",
     "errors": "KinesphereError",
     "io": "read write",

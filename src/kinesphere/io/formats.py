@@ -73,6 +73,13 @@ register(
 )
 register(
     Format(
+        name="clinical angle table",
+        suffixes=(".csv",),
+        writers={"IsbAngles": "kinesphere.io.isb_csv:write_isb_angles"},
+    )
+)
+register(
+    Format(
         name="CSV",
         suffixes=(".csv",),
         recognises=_is_csv,

@@ -9,8 +9,8 @@ FAR_OUT = 3.0
 LEAST_STRAY = 0.03
 """m; a limb nearer to where its axes take it is never called astray."""
 FASTEST = np.deg2rad(8000.0)
-"""rad/s; a limb that turns faster against its parent has leapt. The fastest that people do, an upper
-arm in throwing, may reach 7700 °/s (Seroyer et al. 2010, Sports Health 2(2), PMC3445080)."""
+"""rad/s; a limb that turns faster against its parent has leapt. The fastest of people, an upper arm
+in throwing, may reach 7700 °/s (Seroyer et al. 2010, Sports Health 2(2), PMC3445080)."""
 
 
 def improbable_poses(solution: Solution) -> dict[str, Mask]:

@@ -11,6 +11,7 @@ import kinesphere
 from kinesphere.data import Solution
 from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.bodies import find_bodies
+from kinesphere.report.clinical import clinical_section
 from kinesphere.report.moments import moment_rows
 from kinesphere.report.notices import names_of, notices
 from kinesphere.report.scene import scene_from_solution
@@ -61,6 +62,7 @@ def report_html(solution: Solution, title: str = "") -> str:
         bodies=bodies_section(solution),
         moments=moments,
         moments_more=more,
+        clinical=clinical_section(solution),
         stride=scene["stride"],
         shown_rate=f"{scene['rate']:g}",
         style=Markup(asset("page.css")),

@@ -13,6 +13,9 @@ from kinesphere.editing.mesh.shape import fit_shape
 from kinesphere.editing.mesh.standing import ups_while_standing
 from kinesphere.editing.mesh.untangle import inverted_faces, softened, untangled
 
+_SOFTENING = (16, 64, 256)
+"""Rounds of softening, until no triangle is turned over: the first do for most people."""
+
 
 def attach_surface(
     motion: Motion, body: Surface | None = None, settings: SurfaceSettings | None = None
@@ -45,9 +48,12 @@ def attach_surface(
     if settings.fit_girths:
         maps = fit_girths(body, skeleton, maps, settings.marker_height / 1e3)
     matrices, shifts = maps.matrices()
-    vertices = _carried_softly(body, matrices, shifts)
-    vertices = untangled(vertices, body.faces, body.weights, body.vertices, maps.turns)
-    turned = inverted_faces(vertices, body.faces, body.weights, body.vertices, maps.turns)
+    for rounds in _SOFTENING:
+        vertices = _carried_softly(body, matrices, shifts, rounds)
+        vertices = untangled(vertices, body.faces, body.weights, body.vertices, maps.turns)
+        turned = inverted_faces(vertices, body.faces, body.weights, body.vertices, maps.turns)
+        if not turned.any():
+            break
     step = Step(
         "surface",
         settings_as_json(settings),
@@ -70,8 +76,8 @@ def attach_surface(
     )
 
 
-def _carried_softly(body: Surface, matrices: Array, shifts: Array) -> Array:
-    weights = softened(body.weights, body.faces)
+def _carried_softly(body: Surface, matrices: Array, shifts: Array, rounds: int) -> Array:
+    weights = softened(body.weights, body.faces, rounds)
     moved = np.einsum("vl,lij,vj->vi", weights, matrices, body.vertices, optimize=True)
     return np.asarray(moved + weights @ shifts)
 

@@ -49,8 +49,9 @@ def fit_girths(body: Surface, skeleton: Skeleton, maps: LimbMaps, marker_height:
             points = skeleton.limbs[limb].marker_positions + origins[limb]
             points = points[np.isfinite(points).all(axis=1)]
             if kind not in _UPRIGHT:
-                reach = (points[:, 1] - joints[limb, 1]) / (ends[limb, 1] - joints[limb, 1])
-                points = points[reach < _FLESH]
+                along = ends[limb, 1] - joints[limb, 1]  # zero for a limb the body lacks
+                reach = (points[:, 1] - joints[limb, 1]) * np.sign(along)
+                points = points[reach < _FLESH * abs(along)]
             row, value = _seen_from_axis(body, vertices, limb, maps.places[limb], points)
             rows.append(row)
             values.append(value - marker_height)

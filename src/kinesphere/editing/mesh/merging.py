@@ -8,6 +8,7 @@ from kinesphere.data import Skeleton, Surface
 from kinesphere.errors import BadSurface
 
 _ROOTS = ("pelvis", "trunk")
+_PAIRS = ("thigh", "upper_arm")
 
 
 def on_limbs_of(body: Surface, skeleton: Skeleton) -> Surface:
@@ -20,13 +21,19 @@ def on_limbs_of(body: Surface, skeleton: Skeleton) -> Surface:
     Raises
     ------
     BadSurface
-        If the skeleton has no trunk or pelvis as its root: nobody knows which limb is which.
+        If the skeleton has no trunk or pelvis as its root, or neither a pair of thighs nor one of
+        upper arms: nobody knows which limb is which.
     """
     names = skeleton.limb_names
     if names[0] not in _ROOTS:
         raise BadSurface(
             f"the root is called {names[0]}; a body needs pelvis or trunk as its root, that is "
             "limbs that are known by name"
+        )
+    if not any({f"left_{limb}", f"right_{limb}"} <= set(names) for limb in _PAIRS):
+        raise BadSurface(
+            "a body needs both thighs or both upper arms by name; the limbs are called "
+            f"{', '.join(names)}"
         )
     to = np.zeros((len(body.limbs), len(names)))
     for old in range(len(body.limbs)):

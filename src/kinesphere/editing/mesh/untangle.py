@@ -7,7 +7,6 @@ from scipy.sparse import csr_array
 from kinesphere.data import Array
 
 _ROUNDS = 200
-_SOFT = 16
 _STEP = 0.5  # of the way to the middle of the neighbours
 _RINGS = 2  # how far around a triangle vertices give way
 
@@ -39,14 +38,14 @@ def neighbours(faces: NDArray[np.intp], count: int) -> csr_array:
     return near
 
 
-def softened(weights: Array, faces: NDArray[np.intp]) -> Array:
+def softened(weights: Array, faces: NDArray[np.intp], rounds: int) -> Array:
     """Return weights that change more slowly over the surface, for the way into another pose.
 
     An arm lowered by 45° and moved by centimetres folds the armpit where weights change fast.
     """
     near = neighbours(faces, len(weights))
     degree = np.maximum(np.asarray(near.sum(axis=1)).ravel(), 1.0)[:, None]
-    for _ in range(_SOFT):
+    for _ in range(rounds):
         weights = (weights + (near @ weights) / degree) / 2
     return weights
 
