@@ -1,5 +1,11 @@
 """``kinesphere view``: what it refuses before it opens anything."""
 
+import json
+import signal
+import subprocess
+import sys
+import urllib.request
+
 import pytest
 
 pytest.importorskip("viser")
@@ -44,3 +50,20 @@ def test_a_port_is_a_port(call, c3d, port):
     called = call("view", c3d, "--no-open", "--port", port)
     assert called.code == 2
     assert len(called.error_lines) == 1
+
+
+def test_it_serves_until_it_is_interrupted(c3d):
+    command = [sys.executable, "-m", "kinesphere", "view", str(c3d), "--no-open", "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        lines = [process.stdout.readline()]
+        while lines[-1].strip() not in (b"}", b""):
+            lines.append(process.stdout.readline())
+        told = json.loads(b"".join(lines))
+        assert told["address"].startswith("http://127.0.0.1:")
+        assert told["edits"] is None
+        with urllib.request.urlopen(told["address"], timeout=20) as page:
+            assert b"<html" in page.read(10_000)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=20)
+    assert process.returncode == 0
+    assert (out, err) == (b"", b"")
