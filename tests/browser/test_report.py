@@ -2,6 +2,12 @@
 
 import pytest
 
+from kinesphere.io import read
+from kinesphere.pipeline import solve
+from kinesphere.report import report_html
+
+pytestmark = pytest.mark.slow
+
 SEEN = "canvas => canvas.toDataURL()"
 PAINTED = """canvas => {
   const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
@@ -216,3 +222,21 @@ def test_the_body_is_shown_where_the_browser_can(report):
     assert without.complaints == []
     assert not without.page.locator('[data-show="mesh"]').is_visible()
     assert without.page.locator("#stage").evaluate(PAINTED)
+
+
+@pytest.mark.real
+def test_a_real_recording_opens_without_a_complaint(watch, recordings, tmp_path, until):
+    solved = solve(read(recordings / "plugin-gait" / "PiG_Motion-FlatFoot-Full.c3d"))
+    path = tmp_path / "report.html"
+    path.write_text(report_html(solved, "walk"), encoding="utf-8")
+    watched = watch()
+    watched.page.goto(path.as_uri())
+    watched.page.wait_for_selector("body.ready")
+    first = frame(watched.page)
+    assert first == 153  # the file begins there
+    watched.page.locator(".moments .event").first.click()
+    assert frame(watched.page) > first
+    watched.page.keyboard.press("Space")
+    moved = frame(watched.page)
+    until(lambda: frame(watched.page) != moved)
+    assert watched.complaints == []

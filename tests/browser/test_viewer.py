@@ -8,6 +8,8 @@ from kinesphere.cli.main import run
 from kinesphere.io import read, read_edits, write
 from kinesphere.viewer import serve, take_from
 
+pytestmark = pytest.mark.slow
+
 SAME = 1e-9
 ELSEWHERE = "127.0.0.1"
 

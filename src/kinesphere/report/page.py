@@ -22,10 +22,14 @@ SCRIPTS = (
     "space.js",
     "figure.js",
     "mesh.js",
+    "pick.js",
+    "hand.js",
     "player.js",
     "curves.js",
-    "pick.js",
+    "track.js",
     "heat.js",
+    "selection.js",
+    "paper.js",
     "page.js",
 )
 """The page's own program, in the order in which the parts build on each other."""

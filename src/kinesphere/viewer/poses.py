@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Parameters, Solution
-from kinesphere.data.edits import Edit
+from kinesphere.data.edits import Axis, Edit
 from kinesphere.editing import edit_parameters, find_moves, moved_markers, moved_poses
 from kinesphere.geometry.rotations import rotation_about
 
@@ -73,3 +73,10 @@ def turning_axes(parameters: Parameters, joint: int, frame: int) -> Array:
         carried = carried @ rotation_about(hung.axes[k], angles[k : k + 1])[0]
     found = [*reversed(found), carried @ hung.rest @ limb.long_axis]
     return np.array(found)
+
+
+def angle_deg(parameters: Parameters, frame: int, joint: int, axis: Axis) -> float:
+    """Return an angle of a joint in a frame, deg: about a movement axis, or else the twist."""
+    if isinstance(axis, int):
+        return float(np.rad2deg(parameters.angles[frame, joint, axis - 1]))
+    return float(np.rad2deg(parameters.twists[frame, joint]))

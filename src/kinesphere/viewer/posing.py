@@ -2,40 +2,22 @@
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from kinesphere.data import Parameters
 from kinesphere.data.edits import ROOT, Axis, Edit, edit_in_words
 from kinesphere.errors import KinesphereError
 from kinesphere.io import write_edits
 from kinesphere.viewer.handles import Handles
 from kinesphere.viewer.panel import ALL, NOTHING, RANGE, Panel
-from kinesphere.viewer.poses import EditedPoses, turning_axes
+from kinesphere.viewer.poses import EditedPoses, angle_deg, turning_axes
 from kinesphere.viewer.session import Scope, Session, Target, session_from_edits
 from kinesphere.viewer.stage import Stage
-from kinesphere.viewer.wiring import on_change, on_press
+from kinesphere.viewer.wiring import Time, on_change, on_press
 
 if TYPE_CHECKING:
     import viser
 
 _GRAIN = 0.1  # deg; what a dragged arc is rounded to
-
-
-class Time(Protocol):
-    """What posing needs of the viewer around it."""
-
-    @property
-    def frame(self) -> int:
-        """The frame on view, counted from 0."""
-
-    @property
-    def playing(self) -> bool:
-        """Whether time passes."""
-
-    def draw(self) -> None:
-        """Show the frame on view."""
 
 
 class Posing:
@@ -118,7 +100,7 @@ class Posing:
             return
         old, new = self._poses.solution.parameters, self._poses.parameters
         self._panel.tell_angles(
-            [(axis, _degrees(old, frame, joint, axis), _degrees(new, frame, joint, axis))
+            [(axis, angle_deg(old, frame, joint, axis), angle_deg(new, frame, joint, axis))
              for axis in self.axes]
         )  # fmt: skip
         self._place_handles(joint, frame)
@@ -207,9 +189,3 @@ def _joint_called(name: str, names: tuple[str, ...]) -> int | None:
     if name == ROOT:
         return -1
     return names.index(name) if name in names else None
-
-
-def _degrees(parameters: Parameters, frame: int, joint: int, axis: Axis) -> float:
-    if isinstance(axis, int):
-        return float(np.rad2deg(parameters.angles[frame, joint, axis - 1]))
-    return float(np.rad2deg(parameters.twists[frame, joint]))

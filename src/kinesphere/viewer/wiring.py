@@ -1,7 +1,22 @@
 """Calls from the server: all in its event loop, so that nothing happens at the same time."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
+
+
+class Time(Protocol):
+    """What posing needs of the viewer around it."""
+
+    @property
+    def frame(self) -> int:
+        """The frame on view, counted from 0."""
+
+    @property
+    def playing(self) -> bool:
+        """Whether time passes."""
+
+    def draw(self) -> None:
+        """Show the frame on view."""
 
 
 def on_change(handle: Any, call: Callable[[Any], object]) -> None:

@@ -56,7 +56,7 @@ async function start() {
     player.draw(frame);
     heat.point(frame);
     if (!track.element.hidden) track.point(frame);
-    tellPicked(frame);
+    selection.tell(frame);
     charts.forEach((chart) => chart.visible && chart.point(frame));
   }
   function play(on) {
@@ -113,63 +113,8 @@ async function start() {
     redraw();
   });
 
-  /* --- what is picked: player, charts, tables and the list say the same --- */
-  const list = $("#pick");
-  const words = (name) => name.replaceAll("_", " ");
-  function offer(label, kind, entries) {
-    const group = document.createElement("optgroup");
-    group.label = label;
-    entries.forEach((name, i) => group.append(new Option(name, `${kind} ${i}`)));
-    if (entries.length) list.append(group);
-  }
-  offer("Joints", "joint", scene.joints.map((joint) => words(joint.name)));
-  offer("Markers", "marker", scene.markers.map((marker) => marker.label));
-  function pick(picked, show = true) {
-    player.picked = picked;
-    const joint = picked?.kind === "joint" ? picked.index : -1;
-    list.value = picked && picked.kind !== "limb" ? `${picked.kind} ${picked.index}` : "";
-    charts.forEach((chart) => {
-      chart.element.classList.toggle("picked", chart.index === joint);
-      if (show && chart.index === joint) chart.element.scrollIntoView({ block: "nearest" });
-    });
-    document.querySelectorAll("tr[data-joint]").forEach((row) =>
-      row.classList.toggle("picked", Number(row.dataset.joint) === joint));
-    track.element.hidden = picked?.kind !== "marker";
-    if (picked?.kind === "marker") track.show(picked.index);
-    seek(time);
-  }
-  const sources = [];
-  scene.joints.forEach((joint, i) => {
-    const parts = joint.axes.map((_, k) => [`axis ${k + 1}`, data.angles, 3 * i + k, "°"]);
-    sources.push([...parts, ["twist", data.twists, i, "°"], ["residual", data.joint_residuals, i, " mm"]]);
-  });
-  function tellPicked(frame) {
-    const picked = player.picked;
-    let told = "Click a joint or a marker, or choose it here.";
-    if (picked?.kind === "joint") {
-      told = sources[picked.index].map(([name, array, series, unit]) => {
-        const v = array.at(series, frame);
-        return `${name} ${Number.isFinite(v) ? v.toFixed(1) + unit : "–"}`;
-      }).join(" · ");
-    } else if (picked?.kind === "marker") {
-      const p = player.point("markers", picked.index, frame);
-      told = p ? ["x", "y", "z"].map((axis, k) => `${axis} ${(1000 * p[k]).toFixed(0)}`).join(" · ") + " mm" : "unseen";
-    } else if (picked) told = player.picker.name(picked);
-    $("#told").textContent = told;
-  }
-  player.onpick = (picked) => pick(picked);
-  list.addEventListener("change", () => {
-    const [kind, index] = list.value.split(" ");
-    pick(kind ? { kind, index: Number(index) } : null);
-  });
-  document.querySelectorAll(".chart[data-joint] h3, tr[data-joint] th").forEach((head) =>
-    head.addEventListener("click", () =>
-      pick({ kind: "joint", index: Number(head.closest("[data-joint]").dataset.joint) }, false)));
-  function nextJoint(by) {
-    const n = scene.joints.length;
-    const from = player.picked?.kind === "joint" ? player.picked.index : by > 0 ? -1 : 0;
-    if (n) pick({ kind: "joint", index: (from + by + n) % n });
-  }
+  const selection = new Selection(scene, data, player, charts, track, () => seek(time));
+  const pick = (picked, show) => selection.pick(picked, show);
 
   /* --- where to look --- */
   function visit(i) {
@@ -274,7 +219,7 @@ async function start() {
     a: () => look(0.1, 0), d: () => look(-0.1, 0), w: () => look(0, 0.1), s: () => look(0, -0.1),
     "+": () => look(0, 0, 1 / 1.15), "=": () => look(0, 0, 1 / 1.15), "-": () => look(0, 0, 1.15),
     ",": () => faster(-1), ".": () => faster(1),
-    j: () => nextJoint(1), J: () => nextJoint(-1),
+    j: () => selection.step(1), J: () => selection.step(-1),
     "]": () => nextMoment(1), "[": () => nextMoment(-1),
     Escape: () => pick(null),
   };
@@ -288,8 +233,7 @@ async function start() {
     keys[event.key](event);
   });
 
-  /* --- on paper: light, every chart drawn, everything unfolded --- */
-  function paint() {
+  onPaper(() => {
     Object.assign(theme, themeFromStyles());
     heat.draw();
     charts.forEach((chart) => {
@@ -297,22 +241,6 @@ async function start() {
       chart.point(toFrame(time));
     });
     seek(time);
-  }
-  addEventListener("beforeprint", () => {
-    document.documentElement.classList.add("paper");
-    document.querySelectorAll("details:not([open])").forEach((one) => {
-      one.open = true;
-      one.dataset.folded = "";
-    });
-    paint();
-  });
-  addEventListener("afterprint", () => {
-    document.documentElement.classList.remove("paper");
-    document.querySelectorAll("details[data-folded]").forEach((one) => {
-      one.open = false;
-      delete one.dataset.folded;
-    });
-    paint();
   });
   pick(null);
   document.body.classList.add("ready");

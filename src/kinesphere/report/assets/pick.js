@@ -41,33 +41,46 @@ class Picker {
     const list = picked.kind === "joint" ? scene.joints : scene.limbs;
     return list[picked.index].name.replaceAll("_", " ");
   }
-}
-
-/* The coordinates of a picked marker over time, as any motion-capture program draws them. */
-class TrackChart extends Chart {
-  constructor(element, scene, data, view, theme) {
-    super(element, 0, scene, data, view, theme);
-    this.unit = " mm";
-    this.step = 1;
-    this.scale = 1000;
-    this.margin.left = 46;
-    this.residualHeight = -6;
-    this.visible = true;
-  }
-  values(k) {
-    return k === 3 ? { array: { frames: 0, at: () => NaN }, series: 0 } : { array: this.data.markers, series: 3 * this.index + k };
-  }
-  leastRange() {
-    return 0.02;
-  }
-  paintRuns() {}
-  paintResidual() {}
-  colour(k) {
-    return this.theme.frame[k];
-  }
-  show(index) {
-    this.index = index;
-    this.range = this.findRange();
-    this.draw();
+  /* A ring and a name on what is picked or pointed at; where a picked one was and goes, 1 s either way. */
+  paint(poses, frame) {
+    const { player } = this;
+    const { context, camera, theme, scene } = player;
+    const place = (picked, f, posed) => {
+      if (picked.kind === "marker") return player.point("markers", picked.index, f);
+      if (picked.kind === "limb") return posed[picked.index] && posed[picked.index].origin;
+      const at = scene.joints[picked.index].parent;
+      return player.jointCentre(picked.index, posed || { [at]: player.pose(at, f) });
+    };
+    if (player.picked && player.picked.kind !== "limb") {
+      const reach = Math.round(scene.rate);
+      const step = Math.max(1, Math.round(reach / 60));
+      context.lineWidth = 1.6;
+      context.strokeStyle = theme.accent;
+      let before = null;
+      for (let f = frame - reach; f <= frame + reach; f += step) {
+        const at = f >= 0 && f < scene.n_frames ? place(player.picked, f) : null;
+        const now = at && camera.project(at);
+        if (now && before) {
+          context.globalAlpha = 0.9 * (1 - Math.abs(f - frame) / (reach + 1));
+          context.beginPath();
+          context.moveTo(before[0], before[1]);
+          context.lineTo(now[0], now[1]);
+          context.stroke();
+        }
+        before = now;
+      }
+      context.globalAlpha = 1;
+    }
+    for (const picked of [player.pointed, player.picked]) {
+      const at = picked && place(picked, frame, poses);
+      const p = at && camera.project(at);
+      if (!p) continue;
+      context.strokeStyle = theme.accent;
+      context.lineWidth = 2;
+      context.beginPath();
+      context.arc(p[0], p[1], Math.max(6, 0.03 * p[2]), 0, 2 * Math.PI);
+      context.stroke();
+      player.paintName(this.name(picked), [p[0] + 6, p[1] - 6], "600 12px", theme.text, []);
+    }
   }
 }

@@ -15,7 +15,7 @@ class Player extends Figure {
     this.frame = this.firstSeen();
     this.home = this.centreAt(this.frame) || [0, 0.95, 0];
     this.reset();
-    this.listen();
+    this.hand = new Hand(this);
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
@@ -33,52 +33,6 @@ class Player extends Figure {
     const root = this.pose(0, frame) || this.pose(0, this.firstSeen());
     const anterior = root ? turned(root.quaternion, [1, 0, 0]) : [0, 0, 1];
     return Math.atan2(anterior[0], anterior[2]);
-  }
-  listen() {
-    const held = new Map();
-    const canvas = this.canvas;
-    let travelled = 0;
-    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("pointerdown", (event) => {
-      canvas.setPointerCapture(event.pointerId);
-      travelled = held.size ? Infinity : 0;
-      held.set(event.pointerId, [event.offsetX, event.offsetY]);
-    });
-    const release = (event) => held.delete(event.pointerId);
-    canvas.addEventListener("pointerup", (event) => {
-      release(event); // a press that went nowhere points at something
-      if (travelled < 5) this.onpick(this.picker.nearest(event.offsetX, event.offsetY));
-    });
-    canvas.addEventListener("pointerleave", () => this.pointAt(null));
-    canvas.addEventListener("pointercancel", release);
-    canvas.addEventListener("pointermove", (event) => {
-      const before = held.get(event.pointerId);
-      if (!before) {
-        if (event.pointerType === "mouse") this.pointAt(this.picker.nearest(event.offsetX, event.offsetY));
-        return;
-      }
-      const now = [event.offsetX, event.offsetY];
-      const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
-      travelled += Math.hypot(dx, dy);
-      if (held.size === 2) {
-        const [other] = [...held].filter(([id]) => id !== event.pointerId).map(([, p]) => p);
-        const apart = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
-        this.zoom(apart(before) / apart(now));
-        this.camera.pan(dx / 2, dy / 2);
-      } else if (event.shiftKey || event.buttons & 6) {
-        this.camera.pan(dx, dy);
-      } else {
-        this.orbit(-dx * 0.008, dy * 0.008);
-      }
-      held.set(event.pointerId, now);
-      this.draw();
-    });
-    canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      this.zoom(Math.exp(Math.max(-60, Math.min(60, event.deltaY)) * 0.0022));
-      this.draw();
-    }, { passive: false });
-    canvas.addEventListener("dblclick", () => this.reset());
   }
   orbit(yaw, pitch) {
     this.camera.yaw += yaw;
@@ -124,7 +78,7 @@ class Player extends Figure {
     this.addAxes(items, poses);
     items.sort((a, b) => b.depth - a.depth).forEach((item) => item.paint());
     if (this.show.names) this.paintNames(bones, frame);
-    this.paintPicked(poses, frame);
+    this.picker.paint(poses, frame);
   }
   paintBody(poses, width, height, ratio) {
     if (!this.show.mesh || !this.body) return;
@@ -310,47 +264,6 @@ class Player extends Figure {
         this.addArrow(items, add(centre, scaled(way, -0.6)), add(centre, way), this.theme.series[i], 2.4);
       });
     });
-  }
-  /* A ring and a name on what is picked or pointed at; where a picked one was and goes, 1 s either way. */
-  paintPicked(poses, frame) {
-    const { context, camera, theme, scene } = this;
-    const place = (picked, f, posed) => {
-      if (picked.kind === "marker") return this.point("markers", picked.index, f);
-      if (picked.kind === "limb") return posed[picked.index] && posed[picked.index].origin;
-      const at = scene.joints[picked.index].parent;
-      return this.jointCentre(picked.index, posed || { [at]: this.pose(at, f) });
-    };
-    if (this.picked && this.picked.kind !== "limb") {
-      const reach = Math.round(scene.rate);
-      const step = Math.max(1, Math.round(reach / 60));
-      context.lineWidth = 1.6;
-      context.strokeStyle = theme.accent;
-      let before = null;
-      for (let f = frame - reach; f <= frame + reach; f += step) {
-        const at = f >= 0 && f < scene.n_frames ? place(this.picked, f) : null;
-        const now = at && camera.project(at);
-        if (now && before) {
-          context.globalAlpha = 0.9 * (1 - Math.abs(f - frame) / (reach + 1));
-          context.beginPath();
-          context.moveTo(before[0], before[1]);
-          context.lineTo(now[0], now[1]);
-          context.stroke();
-        }
-        before = now;
-      }
-      context.globalAlpha = 1;
-    }
-    for (const picked of [this.pointed, this.picked]) {
-      const at = picked && place(picked, frame, poses);
-      const p = at && camera.project(at);
-      if (!p) continue;
-      context.strokeStyle = theme.accent;
-      context.lineWidth = 2;
-      context.beginPath();
-      context.arc(p[0], p[1], Math.max(6, 0.03 * p[2]), 0, 2 * Math.PI);
-      context.stroke();
-      this.paintName(this.picker.name(picked), [p[0] + 6, p[1] - 6], "600 12px", theme.text, []);
-    }
   }
   /* Limbs first, then markers from near to far; a name that finds no free place stays away. */
   paintNames(bones, frame) {
