@@ -25,7 +25,7 @@ ARGUMENTS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-PATIENCE = 20.0
+PATIENCE = 60.0
 """s after which something is called not to happen."""
 
 

@@ -11,7 +11,9 @@ from kinesphere.viewer import serve, take_from
 pytestmark = pytest.mark.slow
 
 SAME = 1e-9
-ELSEWHERE = "127.0.0.1"
+LOCAL = "127.0.0.1"
+DRAWN_MS = 400
+"""A few pictures, drawn by software."""
 
 
 @pytest.fixture
@@ -27,8 +29,8 @@ def view(watch, tmp_path):  # a small page: software draws it
         )
         servers.append((server, viewer))
         watched = watch(viewport={"width": 880, "height": 620}, **options)
-        watched.page.goto(f"http://{ELSEWHERE}:{server.get_port()}")
-        watched.page.get_by_role("button", name="Play").wait_for(timeout=30_000)
+        watched.page.goto(f"http://{LOCAL}:{server.get_port()}")
+        watched.page.get_by_role("button", name="Play").wait_for(timeout=60_000)
         watched.viewer, watched.server, watched.edits = viewer, server, edits
         return watched
 
@@ -107,7 +109,7 @@ def test_an_elbow_bent_undone_redone_saved_and_applied(view, solved, until, tmp_
     ):
         assert_allclose(np.array([pose[k] for pose in shown]), kept, atol=SAME)
     assert [c for c in watched.complaints if "THREE" not in c] == []
-    local = (f"http://{ELSEWHERE}", f"ws://{ELSEWHERE}", "data:", "blob:")
+    local = (f"http://{LOCAL}", f"ws://{LOCAL}", "data:", "blob:")
     assert [r for r in watched.requests if not r.startswith(local)] == []
 
 
@@ -131,44 +133,52 @@ def on_screen(server, point):
     )
 
 
-def test_a_bone_is_picked_by_a_click_and_turned_by_its_handle(view, solved, until):
+def test_a_bone_is_picked_by_a_click_and_turned_by_its_ring(view, solved, until):
     watched = view(solved)
     page, viewer, server = watched.page, watched.viewer, watched.server
+    posing, skeleton = viewer.posing, viewer.take.skeleton
     until(lambda: any(c.camera.image_height for c in server.get_clients().values()))
-    page.wait_for_timeout(1500)  # the first picture of a scene takes its time
-    skeleton = viewer.take.skeleton
     limb = skeleton.limb_names.index("right_thigh")
-    figure = viewer.stage.figure
-    placed = figure.sticks(*viewer.take.at(0)[:2])
-    (stick,) = np.flatnonzero(figure.stick_limbs == limb)
-    along = viewer.take.at(0)[0][limb] @ skeleton.limbs[limb].long_axis
+    rotations, origins, _ = viewer.take.at(0)
+    placed = viewer.stage.figure.sticks(rotations, origins)
+    (stick,) = np.flatnonzero(viewer.stage.figure.stick_limbs == limb)
+    along = rotations[limb] @ skeleton.limbs[limb].long_axis
     middle = placed.positions[stick] + 0.4 * placed.scales[stick, 0] * along
-    page.mouse.click(*on_screen(server, middle))
-    until(lambda: viewer.posing.joint == limb - 1)
+
+    def click():
+        page.mouse.click(*on_screen(server, middle))
+        page.wait_for_timeout(DRAWN_MS)
+        return posing.joint == limb - 1
+
+    until(click)  # once the first picture is there, which software takes its time for
     until(lambda: field(page, "Joint").input_value() == skeleton.joint_names[limb - 1])
 
-    page.wait_for_timeout(800)
     (client,) = server.get_clients().values()
-    handles, axes = viewer.posing.handles, viewer.posing.axes
-    sight = client.camera.position - handles.point_on(0, 0.0)
+    rings = posing.handles
+    sight = client.camera.position - rings.point_on(0, 0.0)
     # the ring that faces the eye most, where nothing is before it
-    k = int(np.argmax([abs(way @ sight) for way in handles.ways]))
-    below = max(
-        np.linspace(0, 2 * np.pi, 24), key=lambda a: on_screen(server, handles.point_on(k, a))[1]
-    )
-    start, end = (on_screen(server, handles.point_on(k, below + a)) for a in (0.3, 1.0))
-    page.mouse.move(*start)
-    page.wait_for_timeout(300)
-    page.mouse.down()
-    page.mouse.move(*end, steps=8)
-    page.wait_for_timeout(300)
-    page.mouse.up()
-    until(lambda: len(viewer.posing.session.edits) == 1)
-    until(lambda: viewer.posing.session.held is None)
-    (edit,) = viewer.posing.session.edits
-    assert (edit.joint, edit.axis) == (skeleton.joint_names[limb - 1], axes[k])
+    k = int(np.argmax([abs(way @ sight) for way in rings.ways]))
+    turns = np.linspace(0, 2 * np.pi, 24)
+    lowest = max(turns, key=lambda a: on_screen(server, rings.point_on(k, a))[1])
+    start, end = (on_screen(server, rings.point_on(k, lowest + a)) for a in (0.3, 1.0))
+
+    def drag():
+        page.mouse.move(*start)
+        page.wait_for_timeout(DRAWN_MS)
+        page.mouse.down()
+        page.mouse.move(*end, steps=8)
+        page.wait_for_timeout(DRAWN_MS)
+        page.mouse.up()
+        page.wait_for_timeout(DRAWN_MS)
+        return posing.session.edits
+
+    page.wait_for_timeout(2 * DRAWN_MS)
+    until(drag)
+    until(lambda: posing.session.held is None)
+    (edit,) = posing.session.edits
+    assert (edit.joint, edit.axis) == (skeleton.joint_names[limb - 1], posing.axes[k])
     assert edit.add_deg == pytest.approx(np.rad2deg(0.7), abs=5)  # the hand is sure to some pixels
-    assert len(viewer.posing.session.past) == 1
+    assert len(posing.session.past) == 1
 
 
 def test_it_plays_and_shows_what_is_asked_for(view, solved, until):
