@@ -5,6 +5,7 @@ Writes ``browser.json`` and ``browser.md``. Needs Chromium and playwright.
 
 import argparse
 import json
+import os
 import platform
 import shutil
 import subprocess
@@ -59,6 +60,8 @@ def main() -> int:
     results: dict[str, Any] = {
         "version": __version__,
         "python": platform.python_version(),
+        "cores": os.cpu_count(),
+        "load": os.getloadavg()[0],
         "reports": [_report("24,000 frames, 12 limbs", long),
                     _report("one minute at 120 Hz, CMU layout", minute)],
         "edits": _edits(long),
@@ -127,8 +130,10 @@ def _open_report(browser: Browser, solved: Path) -> dict[str, float]:
     opened = time.monotonic() - start
     shown.keyboard.press("Space")
     drawn = shown.evaluate(_DRAWN, WATCHED_S)
+    shown.keyboard.press("o")
+    plain = shown.evaluate(_DRAWN, WATCHED_S)
     shown.close()
-    return {"open_s": opened, "drawn_hz": drawn}
+    return {"open_s": opened, "drawn_hz": drawn, "plain_hz": plain}
 
 
 def _open_viewer(browser: Browser, solved: Path) -> dict[str, float]:
@@ -142,14 +147,20 @@ def _open_viewer(browser: Browser, solved: Path) -> dict[str, float]:
         lines = [process.stdout.readline()]
         while lines[-1].rstrip() != "}":
             lines.append(process.stdout.readline())
-        served = time.monotonic() - start
+        served, used = time.monotonic() - start, _processor_seconds(process.pid)
         shown = browser.new_page(viewport=SIZE)
         shown.goto(json.loads("".join(lines))["address"])
         shown.get_by_role("button", name="Play").wait_for()
         opened = time.monotonic() - start
         shown.close()
         process.terminate()
-    return {"served_s": served, "open_s": opened, **_play(browser, solved)}
+    return {"served_s": served, "served_cpu_s": used, "open_s": opened, **_play(browser, solved)}
+
+
+def _processor_seconds(pid: int) -> float:
+    """Return the processor time of another process so far, as Linux tells it."""
+    ticks = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()[11:13]
+    return sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
 
 
 def _play(browser: Browser, solved: Path) -> dict[str, float]:
@@ -159,6 +170,9 @@ def _play(browser: Browser, solved: Path) -> dict[str, float]:
     shown.get_by_role("button", name="Play").wait_for()
     shown.wait_for_timeout(3000)
     sent, drawn = _watch(shown, viewer)
+    shown.get_by_role("checkbox", name="Body").uncheck()
+    shown.wait_for_timeout(1000)
+    plain = shown.evaluate(_DRAWN, WATCHED_S)
     shown.close()
     time.sleep(0.5)
     before, start, used = viewer.shown, time.monotonic(), time.process_time()
@@ -168,7 +182,13 @@ def _play(browser: Browser, solved: Path) -> dict[str, float]:
     cost = (time.process_time() - used) / max(frames, 1)
     viewer.stop()
     server.stop()
-    return {"sent_hz": sent, "drawn_hz": drawn, "alone_hz": alone, "frame_s": cost}
+    return {
+        "sent_hz": sent,
+        "drawn_hz": drawn,
+        "plain_hz": plain,
+        "alone_hz": alone,
+        "frame_s": cost,
+    }
 
 
 def _watch(shown: Page, viewer: Any) -> tuple[float, float]:
