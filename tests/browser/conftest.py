@@ -67,6 +67,7 @@ class Watched:
 
     def __init__(self, page):
         self.page, self.complaints, self.requests = page, [], []
+        self.until = until
         page.on("console", self._heard)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: self.requests.append(request.url))

@@ -46,52 +46,62 @@ def field(page, label):
     return page.locator(row).locator("visible=true").last
 
 
-def type_in(page, label, value):
-    box = field(page, label)
-    box.fill(str(value))
-    box.press("Enter")
-    box.blur()
+def type_in(watched, label, value, done):
+    """Type a number beside a label until it has arrived: a page that is busy loses keys."""
+    page = watched.page
+
+    def typed():
+        if done():
+            return True
+        box = field(page, label)
+        box.fill(str(value))
+        box.press("Enter")
+        box.blur()
+        for _ in range(10):
+            page.wait_for_timeout(DRAWN_MS / 2)
+            if done():
+                return True
+        return False
+
+    watched.until(typed)
 
 
-def choose(page, label, option):
-    field(page, label).click()
-    page.get_by_role("option", name=option, exact=True).click()
+def choose(watched, label, option):
+    field(watched.page, label).click()
+    watched.page.get_by_role("option", name=option, exact=True).click()
 
 
-def bend_the_elbow(watched, until):
-    page, posing = watched.page, watched.viewer.posing
-    choose(page, "Joint", "left_elbow")
-    until(lambda: posing.axes == (1, "twist"))
-    choose(page, "Change", "from – to")
-    type_in(page, "from", 100)
-    type_in(page, "to", 200)
-    type_in(page, "Frame", 150)
-    until(lambda: watched.viewer.frame == 149)
-    panel = watched.viewer.panel  # each field reports by itself, in its own time
-    until(lambda: (panel.start.value, panel.end.value) == (100, 200))
-    type_in(page, "axis 1 (°)", 30)
-    until(lambda: [edit.add_deg for edit in posing.session.edits] == [30.0])
+def bend_the_elbow(watched):
+    posing, panel = watched.viewer.posing, watched.viewer.panel
+    choose(watched, "Joint", "left_elbow")
+    watched.until(lambda: posing.axes == (1, "twist"))
+    choose(watched, "Change", "from – to")
+    watched.until(lambda: panel.scope.value == "from – to")
+    type_in(watched, "from", 100, lambda: panel.start.value == 100)
+    type_in(watched, "to", 200, lambda: panel.end.value == 200)
+    type_in(watched, "Frame", 150, lambda: watched.viewer.frame == 149)
+    type_in(watched, "axis 1 (°)", 30, lambda: [e.add_deg for e in posing.session.edits] == [30.0])
 
 
-def test_an_elbow_bent_undone_redone_saved_and_applied(view, solved, until, tmp_path):
+def test_an_elbow_bent_undone_redone_saved_and_applied(view, solved, tmp_path):
     watched = view(solved)
     page, viewer = watched.page, watched.viewer
     before = read(solved)
-    bend_the_elbow(watched, until)
+    bend_the_elbow(watched)
     page.get_by_text("left elbow, axis 1: +30°, frames 100–200").wait_for()
 
     poses = viewer.take.poses
     bent = poses.at(149)[0]
     assert not np.allclose(bent, before.motion.rotations[149])
     page.get_by_role("button", name="Undo").click()
-    until(lambda: viewer.posing.session.edits == ())
+    watched.until(lambda: viewer.posing.session.edits == ())
     assert_array_equal(poses.at(149)[0], before.motion.rotations[149])
     page.keyboard.press("Control+Shift+Z")
-    until(lambda: len(viewer.posing.session.edits) == 1)
+    watched.until(lambda: len(viewer.posing.session.edits) == 1)
     assert_array_equal(poses.at(149)[0], bent)
     page.get_by_role("button", name="Save edits").click()
-    until(watched.edits.exists)
-    until(lambda: viewer.unsaved == ())
+    watched.until(watched.edits.exists)
+    watched.until(lambda: viewer.unsaved == ())
 
     again = view(solved)
     again.page.get_by_text("left elbow, axis 1: +30°, frames 100–200").wait_for()
@@ -133,11 +143,11 @@ def on_screen(server, point):
     )
 
 
-def test_a_bone_is_picked_by_a_click_and_turned_by_its_ring(view, solved, until):
+def test_a_bone_is_picked_by_a_click_and_turned_by_its_ring(view, solved):
     watched = view(solved)
     page, viewer, server = watched.page, watched.viewer, watched.server
     posing, skeleton = viewer.posing, viewer.take.skeleton
-    until(lambda: any(c.camera.image_height for c in server.get_clients().values()))
+    watched.until(lambda: any(c.camera.image_height for c in server.get_clients().values()))
     limb = skeleton.limb_names.index("right_thigh")
     rotations, origins, _ = viewer.take.at(0)
     placed = viewer.stage.figure.sticks(rotations, origins)
@@ -150,8 +160,8 @@ def test_a_bone_is_picked_by_a_click_and_turned_by_its_ring(view, solved, until)
         page.wait_for_timeout(DRAWN_MS)
         return posing.joint == limb - 1
 
-    until(click)  # once the first picture is there, which software takes its time for
-    until(lambda: field(page, "Joint").input_value() == skeleton.joint_names[limb - 1])
+    watched.until(click)  # once the first picture is there, which software takes its time for
+    watched.until(lambda: field(page, "Joint").input_value() == skeleton.joint_names[limb - 1])
 
     (client,) = server.get_clients().values()
     rings = posing.handles
@@ -173,45 +183,48 @@ def test_a_bone_is_picked_by_a_click_and_turned_by_its_ring(view, solved, until)
         return posing.session.edits
 
     page.wait_for_timeout(2 * DRAWN_MS)
-    until(drag)
-    until(lambda: posing.session.held is None)
+    watched.until(drag)
+    watched.until(lambda: posing.session.held is None)
     (edit,) = posing.session.edits
     assert (edit.joint, edit.axis) == (skeleton.joint_names[limb - 1], posing.axes[k])
     assert edit.add_deg == pytest.approx(np.rad2deg(0.7), abs=5)  # the hand is sure to some pixels
     assert len(posing.session.past) == 1
 
 
-def test_it_plays_and_shows_what_is_asked_for(view, solved, until):
+def test_it_plays_and_shows_what_is_asked_for(view, solved):
     watched = view(solved, dark=True)
     page, viewer = watched.page, watched.viewer
     page.get_by_role("button", name="Play").click()
-    until(lambda: viewer.frame > 10 and viewer.shown > 5)
+    watched.until(lambda: viewer.frame > 10 and viewer.shown > 5)
     page.get_by_role("button", name="Pause").click()
-    until(lambda: not viewer.playing)
+    watched.until(lambda: not viewer.playing)
     for label, kind in (("Movement axes", "axes"), ("Limb frames", "frames")):
         page.get_by_role("checkbox", name=label).check()
-        until(lambda kind=kind: viewer.stage.kinds[kind])
+        watched.until(lambda kind=kind: viewer.stage.kinds[kind])
     page.get_by_role("checkbox", name="Markers").uncheck()
-    until(lambda: not viewer.stage.kinds["markers"])
+    watched.until(lambda: not viewer.stage.kinds["markers"])
 
 
-def test_the_root_is_moved_too(view, solved, until):
+def test_the_root_is_moved_too(view, solved):
     watched = view(solved)
-    page, viewer = watched.page, watched.viewer
-    choose(page, "Joint", "root")
-    choose(page, "Change", "all frames")
-    until(lambda: len(viewer.posing.axes) == 6)
-    type_in(page, "shift y (m)", 0.25)
-    until(lambda: [edit.add_m for edit in viewer.posing.session.edits] == [0.25])
+    viewer = watched.viewer
+    choose(watched, "Joint", "root")
+    choose(watched, "Change", "all frames")
+    watched.until(lambda: len(viewer.posing.axes) == 6)
+    type_in(
+        watched,
+        "shift y (m)",
+        0.25,
+        lambda: [e.add_m for e in viewer.posing.session.edits] == [0.25],
+    )
     before = viewer.take.solution.motion.origins
     assert_allclose(viewer.take.at(7)[1], before[7] + (0, 0.25, 0), atol=SAME)
 
 
-def test_a_bare_recording_shows_its_markers(view, solution, until, tmp_path):
+def test_a_bare_recording_shows_its_markers(view, solution, tmp_path):
     path = tmp_path / "walk.c3d"
     write(solution.recording, path)
     watched = view(path)
     assert watched.viewer.posing is None
     assert watched.page.get_by_text("Pose", exact=True).count() == 0
-    type_in(watched.page, "Frame", 20)
-    until(lambda: watched.viewer.frame == 19)
+    type_in(watched, "Frame", 20, lambda: watched.viewer.frame == 19)
