@@ -1,11 +1,14 @@
 """Files in and out: a registry that recognises a format by its content, a module per format."""
 
 from kinesphere.io import formats as formats
+from kinesphere.io.amc import read_amc as read_amc
+from kinesphere.io.asf import read_asf as read_asf
 from kinesphere.io.atomic import check_directory_place as check_directory_place
 from kinesphere.io.atomic import check_file_place as check_file_place
 from kinesphere.io.atomic import replacing as replacing
 from kinesphere.io.atomic import replacing_directory as replacing_directory
 from kinesphere.io.bvh import write_bvh as write_bvh
+from kinesphere.io.bvh_motion import read_bvh as read_bvh
 from kinesphere.io.c3d import read_c3d as read_c3d
 from kinesphere.io.c3d import write_c3d as write_c3d
 from kinesphere.io.csv import read_csv as read_csv
