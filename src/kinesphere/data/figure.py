@@ -106,6 +106,35 @@ def rest_places(skeleton: Skeleton) -> Array:
     return places
 
 
+def rest_from_body(figure: Figure, places: Array) -> Array:
+    """Return the body's axes (x front, y up, z right) among those of the rest pose, (3, 3).
+
+    Up along the body, right by hips and shoulders; a quarter turn at most from the axes there.
+
+    Parameters
+    ----------
+    places : (n_limbs, 3) m
+        Where each limb hangs in the rest pose.
+    """
+    parts = figure.parts
+    hips = [places[parts[f"{side}_thigh"]] for side in SIDES]
+    across = hips[1] - hips[0]
+    if all(f"{side}_upper_arm" in parts for side in SIDES):
+        across = across + places[parts["right_upper_arm"]] - places[parts["left_upper_arm"]]
+    low = np.mean([places[parts[f"{side}_shank"]] for side in SIDES], axis=0)
+    high = places[parts["head"]] if "head" in parts else np.mean(hips, axis=0)
+    up = high - low
+    z = _nearest_axis(across)
+    up = np.where(z != 0, 0.0, up)
+    y = _nearest_axis(up)
+    return np.stack([np.cross(y, z), y, z], axis=1)
+
+
+def _nearest_axis(vector: Array) -> Array:
+    k = int(np.abs(vector).argmax())
+    return np.eye(3)[k] * (1.0 if vector[k] >= 0 else -1.0)
+
+
 def _parts_by_name(skeleton: Skeleton) -> dict[str, int]:
     """Return part → limb; of several limbs of one part the one nearest to the root counts."""
     parents = skeleton.parents
