@@ -28,9 +28,12 @@ if TYPE_CHECKING:
     from kinesphere.editing import apply_edits as apply_edits
     from kinesphere.errors import KinesphereError as KinesphereError
     from kinesphere.io import read as read
+    from kinesphere.io import read_rig as read_rig
     from kinesphere.io import write as write
+    from kinesphere.io import write_on_rig as write_on_rig
     from kinesphere.labelling import label as label
     from kinesphere.pipeline import Settings as Settings
+    from kinesphere.pipeline import retarget as retarget
     from kinesphere.pipeline import solve as solve
     from kinesphere.report import report_html as report_html
 
@@ -47,9 +50,9 @@ _ROOMS = {
     "data.edits": "Edit",
     "editing": "apply_edits",
     "errors": "KinesphereError",
-    "io": "read write",
+    "io": "read read_rig write write_on_rig",
     "labelling": "label",
-    "pipeline": "Settings solve",
+    "pipeline": "Settings retarget solve",
     "report": "report_html",
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names.split()}

@@ -10,6 +10,7 @@ from kinesphere.cli.edit import edit
 from kinesphere.cli.info import info
 from kinesphere.cli.label import label
 from kinesphere.cli.learn import model
+from kinesphere.cli.retarget import retarget
 from kinesphere.cli.settings import settings
 from kinesphere.cli.solve import solve
 
@@ -50,5 +51,5 @@ def kinesphere(
         typer.echo(context.get_help())
 
 
-for command in (demo, info, label, solve, edit, convert, model, settings):
+for command in (demo, info, label, solve, edit, retarget, convert, model, settings):
     app.command()(command)

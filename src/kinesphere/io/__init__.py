@@ -23,11 +23,15 @@ from kinesphere.io.opensim import write_osim as write_osim
 from kinesphere.io.opensim_motion import write_mot as write_mot
 from kinesphere.io.parameters_csv import read_parameters as read_parameters
 from kinesphere.io.parameters_csv import write_parameters as write_parameters
+from kinesphere.io.parts_toml import read_parts as read_parts
 from kinesphere.io.registry import Format as Format
 from kinesphere.io.registry import known_formats as known_formats
 from kinesphere.io.registry import read as read
 from kinesphere.io.registry import register as register
 from kinesphere.io.registry import write as write
+from kinesphere.io.rigs import read_rig as read_rig
+from kinesphere.io.rigs import rig_format as rig_format
+from kinesphere.io.rigs import write_on_rig as write_on_rig
 from kinesphere.io.segments import read_segments as read_segments
 from kinesphere.io.skeleton_json import read_skeleton as read_skeleton
 from kinesphere.io.skeleton_json import write_skeleton as write_skeleton

@@ -79,7 +79,7 @@ def bvh_poses(text: BvhText) -> tuple[Array, Array, tuple[str, ...]]:
     columns = np.cumsum([0, *(len(node.channels) for node in nodes)])
     rotations = np.empty((n, len(nodes), 3, 3))
     places = np.empty((n, len(nodes), 3))
-    added = _positions_are_added(text, columns)
+    added = positions_are_added(text)
     for i, node in enumerate(nodes):
         place = np.tile(np.array(node.offset), (n, 1))
         turn = np.broadcast_to(np.eye(3), (n, 3, 3))
@@ -99,7 +99,9 @@ def bvh_poses(text: BvhText) -> tuple[Array, Array, tuple[str, ...]]:
     return rotations, places, (said,) if added else ()
 
 
-def _positions_are_added(text: BvhText, columns: Array) -> bool:
+def positions_are_added(text: BvhText) -> bool:
+    """Return whether positions of inner joints are nearly zero where their offsets are not."""
+    columns = np.cumsum([0, *(len(node.channels) for node in text.nodes)])
     instead = besides = 0.0
     for i, node in enumerate(text.nodes[1:], start=1):
         for k, channel in enumerate(node.channels):
