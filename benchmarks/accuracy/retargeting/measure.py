@@ -73,12 +73,12 @@ def measured(name: str, motion: Motion, rig_name: str, rig: Skeleton, alike: boo
 
     feet = [source.figure.parts[f"{side}_foot"] for side in SIDES]
     ground = find_ground(places[:, feet], source.leg)
-    shown = soles(source, motion.skeleton, motion.rotations, places, ground.ankle)
+    shown = soles(source, motion.skeleton, motion.rotations, places, ground.ankle, 0.2)
     contacts = find_contacts(shown, motion.rate, source.leg, settings)
     scale = target.leg / source.leg
     ankle = target.ankle if target.ankle > 0.3 * scale * ground.ankle else scale * ground.ankle
     standing = {
-        which: soles(target, rig, one.rotations, _places(one), ankle)
+        which: soles(target, rig, one.rotations, _places(one), ankle, 0.2)
         for which, one in (("free", free), ("done", done))
     }
     levels = ground.floor + scale * (shown[..., 1] - ground.floor)

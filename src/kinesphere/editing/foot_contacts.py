@@ -19,6 +19,8 @@ BALL_ALONG = 0.75
 """Share of the way from ankle to the foot's end at which the ball lies where no toes tell it."""
 ANKLE_HEIGHT = 0.09
 """Height of the ankle by the length of hip to ankle, where nothing tells (ibid.)."""
+FOOT = 0.2
+"""m from ankle to ball by m from hip to ankle, where nothing tells (ibid.)."""
 _LEG = 0.85
 """m from hip to ankle, of the person that speeds are given for."""
 _SMOOTH = 0.02
@@ -61,7 +63,12 @@ def find_ground(ankles: Array, leg: float) -> Ground:
 
 
 def soles(
-    rest: RestPose, skeleton: Skeleton, rotations: Array, places: Array, ankle: float
+    rest: RestPose,
+    skeleton: Skeleton,
+    rotations: Array,
+    places: Array,
+    ankle: float,
+    otherwise: float,
 ) -> Array:
     """Return heels and balls of both feet over time, (n_frames, 2, 2, 3) m.
 
@@ -75,27 +82,29 @@ def soles(
         Where limbs hang.
     ankle
         m, how high it stands above the sole.
+    otherwise
+        m from ankle to ball, where the foot itself does not tell.
     """
     found = []
     for side in SIDES:
         foot = rest.figure.parts[f"{side}_foot"]
         turn = rotations[:, foot, None] @ rest.rest_from_body
-        sole = _sole_at_rest(rest, side, ankle, _foot_length(rest, skeleton, side))
+        sole = _sole_at_rest(rest, side, ankle, foot_length(rest, skeleton, side) or otherwise)
         found.append(places[:, foot, None] + (turn @ sole[..., None])[..., 0])
     return np.stack(found, axis=1)
 
 
-def _sole_at_rest(rest: RestPose, side: str, ankle: float, foot_length: float) -> Array:
+def _sole_at_rest(rest: RestPose, side: str, ankle: float, length: float) -> Array:
     """Return heel and ball from the ankle, body axes, (2, 3) m."""
     way = rest.directions.get(f"{side}_foot", np.array([1.0, 0.0, 0.0])) * [1.0, 0.0, 1.0]
     size = float(np.linalg.norm(way))
     forward = way / size if size > 1e-6 else np.array([1.0, 0.0, 0.0])
     down = np.array([0.0, -ankle, 0.0])
-    return np.stack([down - HEEL_BACK * foot_length * forward, down + foot_length * forward])
+    return np.stack([down - HEEL_BACK * length * forward, down + length * forward])
 
 
-def _foot_length(rest: RestPose, skeleton: Skeleton, side: str) -> float:
-    """Return how far in front of the ankle the ball is in the rest pose, m along the floor."""
+def foot_length(rest: RestPose, skeleton: Skeleton, side: str) -> float:
+    """Return how far in front of the ankle the ball is in the rest pose, m; 0 where nothing tells."""
     parts = rest.figure.parts
     foot = parts[f"{side}_foot"]
     if f"{side}_toes" in parts:
@@ -103,6 +112,8 @@ def _foot_length(rest: RestPose, skeleton: Skeleton, side: str) -> float:
     else:
         length = skeleton.limbs[foot].length
         way = BALL_ALONG * (length if length > 0 else 0.0) * skeleton.limbs[foot].long_axis
+        if length > 0 and abs((rest.rest_from_body.T @ way)[1]) > 0.9 * float(np.linalg.norm(way)):
+            return 0.0  # it ends below the ankle
     return float(np.linalg.norm((rest.rest_from_body.T @ way)[[0, 2]]))
 
 

@@ -9,7 +9,14 @@ from kinesphere import __version__
 from kinesphere.data import Array, Json, Motion, PoseFlag, Skeleton, Step
 from kinesphere.data.figure import SIDES, Figure, find_figure
 from kinesphere.data.settings import settings_as_json
-from kinesphere.editing.foot_contacts import Ground, find_contacts, find_ground, soles
+from kinesphere.editing.foot_contacts import (
+    FOOT,
+    Ground,
+    find_contacts,
+    find_ground,
+    foot_length,
+    soles,
+)
 from kinesphere.editing.planting import plant_feet
 from kinesphere.editing.retarget_gaps import without_gaps
 from kinesphere.editing.retarget_rest import RestPose, corrections, rest_pose
@@ -105,10 +112,11 @@ def retarget_motion(
     feet = all(f"{side}_foot" in figure.parts for side in SIDES
                for figure in (source_figure, target_figure))  # fmt: skip
     if settings.feet == "planted" and feet and not _same(motion.skeleton, onto, turned_by):
-        shown = soles(source, motion.skeleton, filled.rotations, places, ground.ankle)
+        foot = FOOT * source.leg
+        shown = soles(source, motion.skeleton, filled.rotations, places, ground.ankle, foot)
         contacts = find_contacts(shown, motion.rate, source.leg, settings)
         levels = ground.floor + scale * (shown[..., 1] - ground.floor)
-        points = soles(target, onto, turns, at, ankle)
+        points = soles(target, onto, turns, at, ankle, scale * (_foot(source, motion) or foot))
         planted = plant_feet(
             turns, at, points, contacts, levels, target, onto, motion.rate, settings
         )
@@ -144,6 +152,10 @@ def _ankle_height(source: RestPose, target: RestPose, ground: Ground, scale: flo
     if source.ankle < 0.3 * ground.ankle:
         return target.ankle
     return scale * ground.ankle + target.ankle - scale * source.ankle
+
+
+def _foot(source: RestPose, motion: Motion) -> float:
+    return float(np.mean([foot_length(source, motion.skeleton, side) for side in SIDES]))
 
 
 def _places(rig: _Rig, middle: Array) -> Array:
