@@ -1,4 +1,4 @@
-"""Skeletons to retarget onto: the recorded one changed, and rigs as animation programs have them."""
+"""Skeletons to retarget onto: the recorded one changed, and rigs of animators."""
 
 from collections.abc import Iterator
 

@@ -3,10 +3,10 @@
 from typing import Any
 
 from kinesphere.cli.console import print_pairs, print_table, print_title, print_warnings, stdout
-from kinesphere.cli.describe_model import number_in_words
 from kinesphere.data import Motion
 from kinesphere.data.figure import find_figure
 from kinesphere.errors import BadModel
+from kinesphere.report import number_in_words
 
 
 def describe_motion(motion: Motion) -> dict[str, Any]:

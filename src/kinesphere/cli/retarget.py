@@ -43,7 +43,9 @@ def retarget(
     height: Annotated[
         float | None,
         typer.Option(
-            "--height", metavar="M", help="The same skeleton, so many metres tall, instead of a rig."
+            "--height",
+            metavar="M",
+            help="The same skeleton, so many metres tall, instead of a rig.",
         ),
     ] = None,
     mapping: Annotated[
@@ -58,7 +60,7 @@ def retarget(
     settings_file: SettingsOption = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Put a motion on another skeleton: limbs point where they pointed, feet stand where they stand.
+    """Put a motion on another skeleton: limbs point as they did, feet stand where they stand.
 
     A rig comes back in its own format with the motion on it, everything else in it untouched.
     Limbs are known by their names (Mixamo, Unity, Unreal, Rigify, CMU…) or by the shape of the
@@ -76,9 +78,9 @@ def retarget(
     if (onto is None) == (height is None):
         raise BadArgument("name either --onto RIG or --height M, and not both")
     for read_from in (source, onto):
-        if read_from is not None and output.exists() and read_from.exists():
-            if output.samefile(read_from):
-                raise BadArgument(f"{output} is read from; name another place for the result")
+        there = read_from is not None and output.exists() and read_from.exists()
+        if there and output.samefile(read_from):  # type: ignore[arg-type]
+            raise BadArgument(f"{output} is read from; name another place for the result")
     if output.suffix and not output.is_dir():
         check_target(output)
     else:
@@ -117,11 +119,11 @@ def _retargeted(
     settings: "Settings",
 ) -> "tuple[Solution | Motion, tuple[str, ...]]":
     """Return the result after it was written, and what the rig has no place for."""
-    from kinesphere.cli.convert import part_for
+    from kinesphere.cli.convert import part_for, write_as_set
     from kinesphere.cli.files import write_solved
     from kinesphere.data import Skeleton, Solution
     from kinesphere.editing import stature
-    from kinesphere.io import read, read_rig, rig_format, write, write_on_rig
+    from kinesphere.io import read, read_rig, rig_format, write_on_rig
     from kinesphere.pipeline import retarget as put
 
     target: Any
@@ -139,15 +141,14 @@ def _retargeted(
                 f"{onto} holds a {type(target).__name__}; a rig (.bvh, .glb, .gltf) or a solved "
                 "folder is wanted"
             )
-    result = put(
-        found, target, settings=settings, parts=parts["rig"], source_parts=parts["source"]
-    )
+    result = put(found, target, settings=settings, parts=parts["rig"], source_parts=parts["source"])
     if onto is not None and rig is not None and output.suffix.lower() == f".{rig}":
         return result, write_on_rig(result, onto, output)
     if isinstance(result, Solution) and (output.is_dir() or not output.suffix):
-        write_solved(result, output, f"{output.name}, retargeted")
+        write_solved(result, output, f"{output.name}, retargeted", settings.bvh)
     else:
-        write(part_for(result, output) if isinstance(result, Solution) else result, output)
+        part = part_for(result, output) if isinstance(result, Solution) else result
+        write_as_set(part, output, settings)
     return result, ()
 
 

@@ -103,7 +103,7 @@ def rest_places(skeleton: Skeleton) -> Array:
     )
     places = origins[0].copy()
     places[1:] += child
-    return places
+    return np.asarray(places)
 
 
 def rest_from_body(figure: Figure, places: Array) -> Array:
@@ -127,12 +127,12 @@ def rest_from_body(figure: Figure, places: Array) -> Array:
     z = _nearest_axis(across)
     up = np.where(z != 0, 0.0, up)
     y = _nearest_axis(up)
-    return np.stack([np.cross(y, z), y, z], axis=1)
+    return np.asarray(np.stack([np.cross(y, z), y, z], axis=1))
 
 
 def _nearest_axis(vector: Array) -> Array:
     k = int(np.abs(vector).argmax())
-    return np.eye(3)[k] * (1.0 if vector[k] >= 0 else -1.0)
+    return np.asarray(np.eye(3)[k] * (1.0 if vector[k] >= 0 else -1.0))
 
 
 def _parts_by_name(skeleton: Skeleton) -> dict[str, int]:

@@ -81,9 +81,7 @@ def _fork(ways: list[list[int]]) -> int:
 
 
 def _alike(ways: list[list[int]], places: Array) -> bool:
-    a, b = (
-        float(np.linalg.norm(np.diff(places[way], axis=0), axis=1).sum()) for way in ways
-    )
+    a, b = (float(np.linalg.norm(np.diff(places[way], axis=0), axis=1).sum()) for way in ways)
     return abs(a - b) <= _ALIKE * max(a, b)
 
 

@@ -104,7 +104,7 @@ def _sole_at_rest(rest: RestPose, side: str, ankle: float, length: float) -> Arr
 
 
 def foot_length(rest: RestPose, skeleton: Skeleton, side: str) -> float:
-    """Return how far in front of the ankle the ball is in the rest pose, m; 0 where nothing tells."""
+    """Return how far in front of the ankle the ball is at rest, m; 0 where nothing tells."""
     parts = rest.figure.parts
     foot = parts[f"{side}_foot"]
     if f"{side}_toes" in parts:

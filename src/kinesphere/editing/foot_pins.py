@@ -1,6 +1,10 @@
 """How a foot must be shifted so that what stands on the ground stays where it stands."""
 
+import itertools
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from kinesphere.data import Array, Mask
 from kinesphere.editing.foot_contacts import BALL, HEEL, runs
@@ -36,7 +40,7 @@ def foot_shifts(
     n = len(points)
     shifts = np.zeros((n, 3))
     pins: list[tuple[int, int, int, int]] = []
-    stances = runs(contacts.any(axis=1))
+    stances = runs(np.asarray(contacts.any(axis=1)))
     for number, (first, end) in enumerate(stances):
         last = np.zeros(3)
         off: list[Array] = []
@@ -57,17 +61,14 @@ def _standing(contacts: Mask, first: int, end: int) -> list[tuple[int, int, int]
     """Return (point, first, last + 1) of the runs of a stance."""
     which = np.where(contacts[first:end, BALL], BALL, HEEL)
     cuts = [0, *(np.flatnonzero(np.diff(which)) + 1), end - first]
-    return [
-        (int(which[a]), first + int(a), first + int(b))
-        for a, b in zip(cuts[:-1], cuts[1:], strict=True)
-    ]
+    return [(int(which[a]), first + int(a), first + int(b)) for a, b in itertools.pairwise(cuts)]
 
 
 def _blend(shifts: Array, stances: list[tuple[int, int]], most: int) -> None:
     """Fill the frames between stances."""
     n = len(shifts)
     ends = [(0, 0), *stances, (n, n)]
-    for (_, a), (b, _) in zip(ends[:-1], ends[1:], strict=True):
+    for (_, a), (b, _) in itertools.pairwise(ends):
         if b - a < 1:
             continue
         before = _rim(shifts, a - 1, -1, ends) if a > 0 else None
@@ -96,7 +97,9 @@ def _rim(shifts: Array, at: int, way: int, stances: list[tuple[int, int]]) -> tu
     return shifts[at], way * (shifts[inner] - shifts[at])
 
 
-def _cubic(t: Array, a: int, b: int, pa: Array, va: Array, pb: Array, vb: Array) -> Array:
+def _cubic(
+    t: NDArray[np.integer[Any]], a: int, b: int, pa: Array, va: Array, pb: Array, vb: Array
+) -> Array:
     """Return the cubic through two points with given changes a frame, (n, 3)."""
     span = b - a
     s = ((t - a) / span)[:, None]

@@ -204,5 +204,3 @@ def _motion(rig: _Rig, at: Array, motion: Motion, filled: Motion, step: Step) ->
         first_frame=motion.first_frame,
         history=(*motion.history, step),
     )
-
-

@@ -21,7 +21,8 @@ def without_gaps(motion: Motion) -> tuple[Motion, tuple[str, ...]]:
     DegenerateMotion
         If the root is never seen.
     """
-    seen = np.isfinite(motion.rotations).all(axis=(2, 3)) & np.isfinite(motion.origins).all(axis=2)
+    placed = np.isfinite(motion.origins).all(axis=2)
+    seen: Mask = np.asarray(np.isfinite(motion.rotations).all(axis=(2, 3)) & placed)
     if seen.all():
         return motion, ()
     if not seen[:, 0].any():
@@ -44,7 +45,9 @@ def without_gaps(motion: Motion) -> tuple[Motion, tuple[str, ...]]:
         centre = origins[gap, p] + rotations[gap, p] @ joint.centre_in_parent
         origins[gap, i] = centre - rotations[gap, i] @ joint.centre_in_child
     share = 1 - seen.mean(axis=0)
-    worst = [motion.skeleton.limb_names[i] for i in np.argsort(-share, kind="stable")[:3] if share[i]]
+    worst = [
+        motion.skeleton.limb_names[i] for i in np.argsort(-share, kind="stable")[:3] if share[i]
+    ]
     said = f"gaps were bridged ({1 - seen.mean():.1%} of all poses; most at {', '.join(worst)})"
     return replace(motion, rotations=rotations, origins=origins, flags=flags), (said,)
 

@@ -31,7 +31,11 @@ class RetargetSettings:
         high=500.0,
     )
     shortest_contact: float = setting(
-        0.08, "A shorter contact is none; a shorter gap in one neither.", unit="s", low=0.0, high=1.0
+        0.08,
+        "A shorter contact is none; a shorter gap in one neither.",
+        unit="s",
+        low=0.0,
+        high=1.0,
     )
     blend: float = setting(
         0.25,
@@ -42,7 +46,7 @@ class RetargetSettings:
     )
     reach: float = setting(
         0.998,
-        "Share of a leg's length beyond which the pelvis is lowered rather than the knee stretched.",
+        "Share of a leg's length beyond which the pelvis goes down and the knee stays bent.",
         low=0.9,
         high=1.0,
     )

@@ -33,10 +33,14 @@ def scaled_skeleton(
     """
     own = dict(limbs or {})
     if odd := sorted(set(own) - set(skeleton.limb_names)):
-        raise BadModel(f"there is no limb {odd[0]!r}; the limbs are {', '.join(skeleton.limb_names)}")
+        raise BadModel(
+            f"there is no limb {odd[0]!r}; the limbs are {', '.join(skeleton.limb_names)}"
+        )
     by = {name: factor * own.get(name, 1.0) for name in skeleton.limb_names}
     if bad := [f for f in by.values() if not LEAST <= f <= MOST]:
-        raise BadSetting(f"limbs are to be {bad[0]:g} times as long; {LEAST:g} to {MOST:g} are right")
+        raise BadSetting(
+            f"limbs are to be {bad[0]:g} times as long; {LEAST:g} to {MOST:g} are right"
+        )
     step = Step("scaling", {"factor": factor, "limbs": dict(own)}, version=__version__)
     return replace(
         skeleton,

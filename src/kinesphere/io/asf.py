@@ -85,9 +85,7 @@ def read_asf(path: str | Path) -> Skeleton:
 def parse_asf(path: Path) -> Asf:
     """Parse a skeleton file; raises UnreadableFile as ``read_asf`` does."""
     sections = _sections(path)
-    units = dict(
-        words[:2] for _, words in sections.get("units", []) if len(words) >= 2
-    )
+    units = dict(words[:2] for _, words in sections.get("units", []) if len(words) >= 2)
     radians = units.get("angle", "deg").lower().startswith("rad")
     root, position = _root(sections.get("root", []), path, radians)
     bones = {ROOT: root}
@@ -140,7 +138,8 @@ def _sections(path: Path) -> dict[str, _Lines]:
 
 
 def _root(lines: _Lines, path: Path, radians: bool) -> tuple[AsfBone, Array]:
-    order, axis, position, orientation = _FREEDOMS[:6], "xyz", np.zeros(3), np.zeros(3)
+    order: tuple[str, ...] = _FREEDOMS[:6]
+    axis, position, orientation = "xyz", np.zeros(3), np.zeros(3)
     for number, words in lines:
         where = f"{path}: line {number}"
         match words[0].lower():
@@ -189,9 +188,7 @@ def _bone(told: dict[str, tuple[str, list[str]]], where: str, radians: bool) -> 
     return AsfBone(name, direction / (size or 1.0), length, axes, freedoms)
 
 
-def _tree(
-    bones: dict[str, AsfBone], lines: _Lines, path: Path
-) -> tuple[list[AsfBone], list[int]]:
+def _tree(bones: dict[str, AsfBone], lines: _Lines, path: Path) -> tuple[list[AsfBone], list[int]]:
     at = {ROOT: 0}
     parents = [-1]
     for number, words in lines:

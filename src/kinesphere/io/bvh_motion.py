@@ -68,12 +68,16 @@ def bones_of(nodes: list[BvhNode]) -> list[Bone]:
 
 
 def bvh_poses(text: BvhText) -> tuple[Array, Array, tuple[str, ...]]:
-    """Return the joints' rotations (n_frames, n, 3, 3) and places (n_frames, n, 3) in the file's
-    axes and unit, and what was doubtful.
+    """Return how joints turn, where they are, and what is doubtful.
 
-    Rotations multiply in the order of their channels. Positions stand in place of the offset;
-    where a file's inner joints have positions that are zero while their offsets are not, they
-    are added to it.
+    Rotations multiply in the order of their channels. Positions stand in place of the offset; where
+    a file's inner joints have positions that are zero while their offsets are not, they are added.
+
+    Returns
+    -------
+    rotations, places : (n_frames, n, 3, 3), (n_frames, n, 3)
+        In the file's axes and unit.
+    warnings
     """
     nodes, n = text.nodes, len(text.values)
     columns = np.cumsum([0, *(len(node.channels) for node in nodes)])

@@ -112,7 +112,9 @@ def _found_joints(document: dict[str, Any], path: Path) -> _Joints:
     if len(inside) > MOST_JOINTS:
         raise UnreadableFile(f"{path}: {len(inside)} joints; at most {MOST_JOINTS} are read")
     ways = [_way(joint, parent_of, path) for joint in sorted(inside)]
-    shared = [step[0] for step in zip(*(w[::-1] for w in ways), strict=False) if len(set(step)) == 1]
+    shared = [
+        step[0] for step in zip(*(w[::-1] for w in ways), strict=False) if len(set(step)) == 1
+    ]
     tops = {next(n for n in way[::-1] if n in inside) for way in ways}
     top = tops.pop() if len(tops) == 1 else (shared[-1] if shared else None)
     if top is None:

@@ -60,9 +60,7 @@ def unit_of_figure(
     if not span > 0:
         return 0.01, (f"{format_name} names no unit and the figure has no size; cm is taken",)
     size = {name: _ODD.get(name) or metres_from_unit(name) or np.nan for name in _GUESSES}
-    guess = min(
-        _GUESSES, key=lambda name: abs(np.log(span * size[name] / TALL)) + _GUESSES[name]
-    )
+    guess = min(_GUESSES, key=lambda name: abs(np.log(span * size[name] / TALL)) + _GUESSES[name])
     return size[guess], (
         f"{format_name} names no unit of length; {guess} is guessed, as the figure then spans "
         f"{span * size[guess]:.2f} m",
@@ -186,7 +184,7 @@ def motion_of_bones(
 
 def _other(axis: int) -> Array:
     """Return the axis of the file that becomes x: its own x, or z where x is up."""
-    return np.eye(3)[0 if axis != 0 else 2]
+    return np.asarray(np.eye(3)[0 if axis != 0 else 2])
 
 
 def _up(motion: Motion) -> str:

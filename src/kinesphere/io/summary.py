@@ -5,6 +5,7 @@ from typing import Any
 
 from kinesphere import __version__
 from kinesphere.data import Solution
+from kinesphere.data.conventions import CONVENTIONS
 from kinesphere.io.json_files import write_json
 
 SUMMARY_FORMAT = "kinesphere-summary-1"
@@ -16,6 +17,7 @@ def summary_of(solution: Solution) -> dict[str, Any]:
     return {
         "format": SUMMARY_FORMAT,
         "version": __version__,
+        "conventions": CONVENTIONS,
         "model": solution.model_name,
         "n_frames": motion.n_frames,
         "rate_hz": motion.rate,

@@ -9,6 +9,7 @@ from typing import Any, get_type_hints
 
 from kinesphere.editing import RetargetSettings
 from kinesphere.errors import BadSetting, UnreadableFile
+from kinesphere.io.bvh_settings import BvhSettings
 from kinesphere.labelling import LabellingSettings
 from kinesphere.normalization import NormalizationSettings
 from kinesphere.parameterization import ParameterizationSettings
@@ -28,6 +29,7 @@ class Settings:
     normalization: NormalizationSettings = field(default_factory=NormalizationSettings)
     parameterization: ParameterizationSettings = field(default_factory=ParameterizationSettings)
     retargeting: RetargetSettings = field(default_factory=RetargetSettings)
+    bvh: BvhSettings = field(default_factory=BvhSettings)
 
 
 def stage_settings(settings: Any) -> dict[str, Any]:

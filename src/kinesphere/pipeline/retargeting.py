@@ -116,7 +116,9 @@ def _without_axes(skeleton: Skeleton) -> Skeleton:
 def _recording(motion: Motion, step: Step) -> Recording:
     """Return the markers of a skeleton where its limbs carry them."""
     placed = motion.marker_positions()
-    markers = np.stack(list(placed.values()), axis=1) if placed else np.empty((motion.n_frames, 0, 3))
+    markers = (
+        np.stack(list(placed.values()), axis=1) if placed else np.empty((motion.n_frames, 0, 3))
+    )
     return Recording(
         markers=markers,
         labels=tuple(placed),
