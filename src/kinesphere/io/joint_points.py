@@ -6,7 +6,8 @@ import numpy as np
 
 from kinesphere.data import Array, Output, Recording, Solution
 from kinesphere.data.conventions import ANGLES, LIMBS, POSE, WRITTEN_BY
-from kinesphere.io.c3d.renew import DESCRIPTIONS, NOTES
+from kinesphere.io.c3d.renew import DESCRIPTIONS, NOTES, OURS
+from kinesphere.io.c3d.source import Source
 
 _CENTRE, _ANGLES = "_centre", "_angles"
 
@@ -51,6 +52,14 @@ def with_joints(solution: Solution) -> Recording:
         outputs=(*recording.outputs, *outputs),
         details={**recording.details, DESCRIPTIONS: told, NOTES: notes},
     )
+
+
+def without_notes(source: Source) -> Source:
+    """Return what a recording's C3D file held before its joints were added to it."""
+    section = source.layout.section
+    groups = tuple(group for group in section.groups if group.name != OURS)
+    layout = replace(source.layout, section=replace(section, groups=groups))
+    return replace(source, layout=layout)
 
 
 def _free(name: str, ending: str, taken: set[str]) -> str:

@@ -12,7 +12,7 @@ from kinesphere.io.atomic import check_directory_place, replacing_directory
 from kinesphere.io.bvh import write_bvh
 from kinesphere.io.bvh_settings import BvhSettings
 from kinesphere.io.c3d import read_c3d, write_c3d
-from kinesphere.io.joint_points import with_joints
+from kinesphere.io.joint_points import with_joints, without_notes
 from kinesphere.io.opensim import write_osim
 from kinesphere.io.opensim_joints import opensim_name
 from kinesphere.io.opensim_motion import write_mot
@@ -125,7 +125,8 @@ def read_solution(directory: str | Path) -> Solution:
     recording = solution.recording
     if _C3D not in recording.details:
         return solution
-    details = {**recording.details, _C3D: read_c3d(directory / RECORDING).details[_C3D]}
+    source = read_c3d(directory / RECORDING).details[_C3D]
+    details = {**recording.details, _C3D: without_notes(source)}
     return replace(solution, recording=replace(recording, details=details))
 
 

@@ -28,6 +28,8 @@ DESCRIPTIONS = "c3d.descriptions"
 """In ``Recording.details``: label → text, of points that no file describes yet."""
 NOTES = "c3d.notes"
 """In ``Recording.details``: sentences for a group of our own."""
+OURS = "KINESPHERE"
+"""That group."""
 _SCREEN = {"x": ("+Y", "X"), "y": ("+X", "Y"), "z": ("+X", "Z")}
 """Up → what POINT:X_SCREEN and Y_SCREEN say of a right-handed room."""
 _TYPES = {
@@ -46,7 +48,7 @@ def renewed(recording: Recording, points: tuple[Point, ...], source: Source | No
     section = _with_frames(section, recording, source)
     section = _with_confidence(section, recording)
     if notes := recording.details.get(NOTES):
-        section = section.with_texts("KINESPHERE", "CONVENTIONS", notes)
+        section = section.with_texts(OURS, "CONVENTIONS", notes)
     if source is None or recording.analog is not source.analog:
         section = _with_analog(section, recording.analog, source.analog if source else None)
     return _with_events(section, recording, source)
@@ -100,6 +102,8 @@ def _with_points(
     unchanged = source is not None and source.labels == tuple(point.label for point in points)
     if not unchanged:
         section = _with_labels(section, points, source, recording.details.get(DESCRIPTIONS, {}))
+        if source is not None:
+            section = _without_gone(section, {point.label for point in points}, source)
         section = _with_types(section, recording.outputs)
     return section
 
@@ -143,6 +147,19 @@ def _rename(section: Section, renamed: dict[str, str], labels: list[str]) -> Sec
     if uses is not None and prefixes and not any(label.startswith(prefixes) for label in labels):
         none = words("USES_PREFIXES", np.zeros(len(uses.numbers)), *uses.dims)
         section = section.with_parameters("SUBJECTS", none)
+    return section
+
+
+def _without_gone(section: Section, labels: set[str], source: Source) -> Section:
+    """Take labels of the source that are no points any more out of the typed groups."""
+    gone = set(source.labels) - labels
+    for group in section.texts("POINT", "TYPE_GROUPS")[::2]:
+        listed = section.texts("POINT", group)
+        if kept := [label for label in listed if label not in gone]:
+            if len(kept) < len(listed):
+                section = section.with_texts("POINT", group, kept)
+        elif listed:
+            section = section.without("POINT", group)
     return section
 
 
