@@ -181,10 +181,18 @@ def test_cmu_01_01_is_the_same_as_the_bvh_made_of_it(recordings):
     amc = read_amc(recordings / "formats" / "01_01.amc")
     bvh = read_bvh(recordings / "formats" / "01_01.bvh")
     pairs = {
-        **{"root": "Hips", "lfemur": "LeftUpLeg", "ltibia": "LeftLeg", "lfoot": "LeftFoot"},
-        **{"rfemur": "RightUpLeg", "rtibia": "RightLeg", "rtoes": "RightToeBase"},
-        **{"rhumerus": "RightArm", "lradius": "LeftForeArm", "rhand": "RightFingerBase"},
-        **{"thorax": "Spine1", "head": "Head"},
+        "root": "Hips",
+        "lfemur": "LeftUpLeg",
+        "ltibia": "LeftLeg",
+        "lfoot": "LeftFoot",
+        "rfemur": "RightUpLeg",
+        "rtibia": "RightLeg",
+        "rtoes": "RightToeBase",
+        "rhumerus": "RightArm",
+        "lradius": "LeftForeArm",
+        "rhand": "RightFingerBase",
+        "thorax": "Spine1",
+        "head": "Head",
     }
     ours, theirs = amc.skeleton.limb_names, bvh.skeleton.limb_names
     for name, other in pairs.items():

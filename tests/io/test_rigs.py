@@ -26,7 +26,10 @@ def any_motion(skeleton, rng, n=20):
     for i, p in enumerate(parents):
         turn = Rotation.from_rotvec(rng.normal(size=3) * np.linspace(0, 2, n)[:, None]).as_matrix()
         if p < 0:
-            rotations[:, i], origins[:, i] = turn, rng.normal(size=3) * np.linspace(0, 1, n)[:, None]
+            rotations[:, i], origins[:, i] = (
+                turn,
+                rng.normal(size=3) * np.linspace(0, 1, n)[:, None],
+            )
             continue
         joint = skeleton.joints[i - 1]
         rotations[:, i] = rotations[:, p] @ turn

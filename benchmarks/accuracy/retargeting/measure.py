@@ -3,6 +3,7 @@
 from dataclasses import asdict, dataclass
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from kinesphere.data import Array, Json, Mask, Motion, Skeleton
 from kinesphere.data.figure import SIDES, find_figure
@@ -49,6 +50,9 @@ class Row:
     jerk_source_deg: float
     """Largest change of such a turn from one frame to the next."""
     jerk_deg: float
+    added_deg: float
+    """Largest amount by which a limb's turn changes more than the same limb's of the source does
+    within two frames."""
     lowered_mm: float
     """How far the pelvis went down at most."""
 
@@ -86,7 +90,8 @@ def measured(name: str, motion: Motion, rig_name: str, rig: Skeleton, alike: boo
     held = _held(contacts)
     before, after = (_slides(standing[which], held) for which in ("free", "done"))
     heels = _slides(standing["done"], contacts & ~held)
-    turns, jerks = zip(*(_leaps(one) for one in (motion, done)), strict=True)
+    (turn_was, jerk_was), (turn, jerk) = (_leaps(one) for one in (motion, done))
+    added = jerk - maximum_filter1d(jerk_was, 5, axis=0, mode="nearest")
     return Row(
         name,
         rig_name,
@@ -102,10 +107,11 @@ def measured(name: str, motion: Motion, rig_name: str, rig: Skeleton, alike: boo
         float(np.max(heels, initial=0.0)) * 1e3,
         float(height.mean()) * 1e3,
         _wrong_knees(target, done, at),
-        turn_source_deg=float(np.rad2deg(turns[0])),
-        turn_deg=float(np.rad2deg(turns[1])),
-        jerk_source_deg=float(np.rad2deg(jerks[0])),
-        jerk_deg=float(np.rad2deg(jerks[1])),
+        turn_source_deg=float(np.rad2deg(turn_was.max())),
+        turn_deg=float(np.rad2deg(turn.max())),
+        jerk_source_deg=float(np.rad2deg(jerk_was.max())),
+        jerk_deg=float(np.rad2deg(jerk.max())),
+        added_deg=float(np.rad2deg(added.max())),
         lowered_mm=float(done.history[-1].findings["pelvis_lowered_mm"]),  # type: ignore[arg-type]
     )
 
@@ -168,13 +174,15 @@ def _wrong_knees(rest, motion, at) -> float:  # type: ignore[no-untyped-def]
     return wrong / max(bent, 1)
 
 
-def _leaps(motion: Motion) -> tuple[float, float]:
-    """Return the largest turn of pelvis, thigh, shank or foot between frames, and its change."""
+def _leaps(motion: Motion) -> tuple[Array, Array]:
+    """Return the turns of pelvis, thighs, shanks and feet between frames, and their changes, rad.
+
+    Of a motion without gaps: (n_frames − 1, 7) and (n_frames − 2, 7).
+    """
     figure = find_figure(motion.skeleton)
     names = [f"{side}_{part}" for side in SIDES for part in ("thigh", "shank", "foot")]
-    at = [figure.pelvis, *(figure.parts[name] for name in names)]
-    r = motion.rotations[:, at]
-    r = r[np.isfinite(r).all(axis=(1, 2, 3))]
-    step = np.swapaxes(r[:-1], -1, -2) @ r[1:]
-    change = np.swapaxes(step[:-1], -1, -2) @ step[1:]
-    return float(rotation_angle(step).max()), float(rotation_angle(change).max())
+    r = motion.rotations[:, [figure.pelvis, *(figure.parts[name] for name in names)]]
+    # in the world: the frames of two rigs stand differently in their limbs
+    step = r[1:] @ np.swapaxes(r[:-1], -1, -2)
+    change = step[1:] @ np.swapaxes(step[:-1], -1, -2)
+    return rotation_angle(step), rotation_angle(change)

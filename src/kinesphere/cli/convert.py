@@ -25,8 +25,9 @@ def convert(
     [bold].trc[/bold] or [bold].csv[/bold]; a solved folder to these (its angles, as
     [bold].csv[/bold]), to [bold].bvh[/bold], [bold].osim[/bold], [bold].mot[/bold],
     [bold].json[/bold] (its skeleton) and [bold].limbs.csv[/bold] (the frame of every limb); a
-    motion read from [bold].bvh[/bold] or [bold].amc[/bold] to [bold].bvh[/bold] and
-    [bold].limbs.csv[/bold].
+    motion read from [bold].bvh[/bold] or [bold].amc[/bold] to [bold].bvh[/bold],
+    [bold].limbs.csv[/bold], and its joints as points to [bold].c3d[/bold], [bold].trc[/bold] and
+    [bold].csv[/bold].
 
     Examples: [bold]kinesphere convert walk.c3d walk.trc[/bold],
     [bold]kinesphere convert solved walk.bvh --set bvh.rest=t-pose --set bvh.names=unity[/bold],
@@ -67,9 +68,12 @@ def write_as_set(found: object, target: Path, settings: "Settings | None") -> No
     from dataclasses import asdict
 
     from kinesphere.data import Motion
-    from kinesphere.io import write, write_bvh
+    from kinesphere.io import recording_of_joints, write, write_bvh
 
-    if settings is not None and isinstance(found, Motion) and target.suffix.lower() == ".bvh":
+    points = target.suffix.lower() in (".c3d", ".trc", ".csv") and ".limbs" not in target.suffixes
+    if isinstance(found, Motion) and points:
+        write(recording_of_joints(found), target)
+    elif settings is not None and isinstance(found, Motion) and target.suffix.lower() == ".bvh":
         write_bvh(found, target, **asdict(settings.bvh))
     else:
         write(found, target)

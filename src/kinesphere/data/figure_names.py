@@ -29,7 +29,9 @@ _PART = {word: part for part, words in _SPELLINGS.items() for word in words.spli
 _CENTRAL = ("pelvis", "trunk", "neck", "head")
 _SIDES = {"l": "left", "left": "left", "r": "right", "right": "right"}
 _PREFIX = re.compile(
-    r"^(.*[:|])?(mixamorig\d*|valvebiped|bip\d+|cc_base|def|org|j_bip_c|j_bip|genesis\d*)?[-_. ]*",
+    r"^(.*[:|])?"
+    r"(mixamorig\d*|character\d*|valvebiped|bip\d+|cc_base|def|org|j_bip_c|j_bip|genesis\d*)?"
+    r"[-_. ]*",
     re.IGNORECASE,
 )
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")

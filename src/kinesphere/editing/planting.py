@@ -77,8 +77,9 @@ def plant_feet(
     ]
     bones = [lengths(knee - hip) + lengths(end - knee) for hip, knee, end, _ in chains]
     most = [
-        np.minimum(settings.reach * bone, longest_reach(*chain))
+        np.minimum(np.maximum(settings.reach * bone, lengths(end - hip)), longest_reach(*chain))
         for bone, chain in zip(bones, chains, strict=True)
+        for hip, _, end, _ in [chain]
     ]
     drop = pelvis_drop(places[:, thighs], goals, np.stack(most, axis=1), rate)
     down = np.array([0.0, 1.0, 0.0]) * drop[:, None]

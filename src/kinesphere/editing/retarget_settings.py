@@ -45,10 +45,12 @@ class RetargetSettings:
         high=2.0,
     )
     reach: float = setting(
-        0.998,
+        0.99,
         "Share of a leg's length beyond which the pelvis goes down and the knee stays bent.",
         low=0.9,
         high=1.0,
+        source="docs/results/retargeting.md; a knee straighter than 16° turns by more than 1° for "
+        "each mm that hip or ankle moves. Legs that are straighter in the recording may be so.",
     )
 
     def __post_init__(self) -> None:

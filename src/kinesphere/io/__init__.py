@@ -15,6 +15,7 @@ from kinesphere.io.csv import read_csv as read_csv
 from kinesphere.io.csv import write_csv as write_csv
 from kinesphere.io.edits_toml import read_edits as read_edits
 from kinesphere.io.edits_toml import write_edits as write_edits
+from kinesphere.io.joint_points import recording_of_joints as recording_of_joints
 from kinesphere.io.limbs_csv import write_limbs as write_limbs
 from kinesphere.io.model_json import read_model as read_model
 from kinesphere.io.model_json import write_model as write_model

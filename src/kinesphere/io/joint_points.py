@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinesphere.data import Array, Output, Recording, Solution
+from kinesphere.data import Array, Motion, Output, Recording, Solution
 from kinesphere.data.conventions import ANGLES, LIMBS, POSE, WRITTEN_BY
 from kinesphere.io.c3d.renew import DESCRIPTIONS, NOTES, OURS
 from kinesphere.io.c3d.source import Source
@@ -79,3 +79,30 @@ def _angles(solution: Solution, j: int) -> Array:
         angles[:, 2] = np.nan_to_num(parameters.twists[:, j], nan=0.0)
     angles[unseen] = np.nan
     return angles
+
+
+def recording_of_joints(motion: Motion) -> Recording:
+    """Return where limbs hang and end as a recording, for programs that know points alone.
+
+    A point is named like the limb that hangs there; the far end of a limb that carries none is
+    ``LIMB_end``, where its length is known.
+    """
+    skeleton = motion.skeleton
+    points = [motion.origins[:, :1], motion.joint_centres()]
+    labels = list(skeleton.limb_names)
+    for i, limb in enumerate(skeleton.limbs):
+        if limb.length > 0 and i not in skeleton.parents:
+            hangs = skeleton.joints[i - 1].centre_in_child if i else np.zeros(3)
+            end = motion.rotations[:, i] @ (hangs + limb.length * limb.long_axis)
+            points.append((end + motion.origins[:, i])[:, None])
+            labels.append(_free(f"{limb.name}_end", "_", set(labels)))
+    told = {label: f"where {label} hangs" for label in skeleton.limb_names[1:]}
+    return Recording(
+        markers=np.concatenate(points, axis=1),
+        labels=tuple(labels),
+        rate=motion.rate,
+        first_frame=motion.first_frame,
+        up="+y",
+        details={DESCRIPTIONS: told},
+        history=motion.history,
+    )
