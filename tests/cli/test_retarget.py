@@ -16,9 +16,7 @@ from kinesphere.io import read, write, write_bvh
 def solved(performance, tmp_path_factory):
     """Return a solved folder as truth has it."""
     folder = tmp_path_factory.mktemp("solved") / "walk"
-    truth = Solution(
-        performance.recording, performance.motion, performance.parameters, "cmu41"
-    )
+    truth = Solution(performance.recording, performance.motion, performance.parameters, "cmu41")
     write(truth, folder)
     (folder / "report.html").write_text("<p></p>", encoding="utf-8")
     return folder
@@ -128,7 +126,9 @@ def test_what_cannot_be_meant_is_one_line(call, solved, performance, tmp_path, w
     write_bvh(performance.motion, tmp_path / "rig.bvh")
     (tmp_path / "map.toml").write_text('[wrong]\nhead = "x"\n', encoding="utf-8")
     named = {"RIG": tmp_path / "rig.bvh", "MAP": tmp_path / "map.toml"}
-    words = [named.get(w, tmp_path / w if w in ("x.bvh", "x.xyz", "none.bvh") else w) for w in words]
+    words = [
+        named.get(w, tmp_path / w if w in ("x.bvh", "x.xyz", "none.bvh") else w) for w in words
+    ]
     done = call("retarget", solved, *words)
     assert done.code == 2
     assert said in done.err

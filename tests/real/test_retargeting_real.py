@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-
 from benchmarks.accuracy.retargeting.contacts import events_of, matched
 from benchmarks.accuracy.retargeting.measure import measured
 from benchmarks.accuracy.retargeting.rigs import changed, character
+
 from kinesphere import solve
 from kinesphere.editing import retarget_motion
 from kinesphere.io import read, read_rig, write_on_rig

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.accuracy.retargeting``: run, print, write; exit code 1 if a bar is missed."""
+"""``python -m benchmarks.accuracy.retargeting``: run, print, write; 1 if a bar is missed."""
 
 import json
 import os

@@ -21,38 +21,42 @@ _INTRODUCTION = """\
 Written by `python -m benchmarks.accuracy.retargeting`; every number is in
 `benchmarks/results/retargeting.json`.
 
-Real recordings, solved, then put on other skeletons: the person's own 20 % shorter and taller, with other
-proportions (thigh × 0.85, shank × 1.1, foot × 0.8, pelvis × 1.3, upper arm × 1.15, forearm × 0.9), a character named
-as Mixamo names its own in T pose, the same in A pose with legs × 1.2 and hips × 1.4, and the rig of CMU's
-BVH files (legs 20° apart at rest). Solved skeletons keep the limb frames, and so every joint parameter but the legs';
-rigs keep the directions of bones.
+Real recordings, solved, then put on other skeletons: the person's own 20 % shorter and taller,
+with other proportions (thigh × 0.85, shank × 1.1, foot × 0.8, pelvis × 1.3, upper arm × 1.15,
+forearm × 0.9), a character named as Mixamo names its own in T pose, the same in A pose with legs
+× 1.2 and hips × 1.4, and the rig of CMU's BVH files (legs 20° apart at rest). Solved skeletons
+keep the limb frames, and so every joint parameter but the legs'; rigs keep the directions of
+bones.
 
-Onto its own skeleton a motion comes back within {itself:.1e} (m, and entries of rotation matrices).
+Onto its own skeleton a motion comes back within {itself:.1e} (m, and entries of rotation
+matrices).
 """
 _KEPT = """\
 ## What is kept
 
-*arms*: the largest angle between a bone of the arms (a limb's frame, on solved skeletons) and the source's. *legs*: the
-same of thighs and shanks, which reach for the ground: median and largest. *knees*: frames in which a knee bent by
-more than 10° bends the wrong way. *turn*: the largest turn of pelvis, thigh, shank or foot between two frames, and
-*change*, of that turn from one frame to the next, each by the source's: 1 means that nothing leaps that did not
-leap before. *added*: by how much a limb's turn changes more from frame to frame than the same limb's of the source
-does within two frames.
+*arms*: the largest angle between a bone of the arms (a limb's frame, on solved skeletons) and the
+source's. *legs*: the same of thighs and shanks, which reach for the ground: median and largest.
+*knees*: frames in which a knee bent by more than 10° bends the wrong way. *turn*: the largest
+turn of pelvis, thigh, shank or foot between two frames, and *change*, of that turn from one frame
+to the next, each by the source's: 1 means that nothing leaps that did not leap before. *added*:
+by how much a limb's turn changes more from frame to frame than the same limb's of the source does
+within two frames.
 """
 _FEET = """\
 ## Feet
 
-Heels and balls stand where they are slow and low (`kinesphere settings`: `retargeting`). *slide*: how far a
-held point strays along the floor from its middle while it stands, with feet left free (as the bones' directions have them)
-and planted. *heel*: the same of a heel while the ball of its foot, which then is the point that is held, stands too; it
-turns about the ball as in the recording. *height*: mean distance of standing points to the scaled height of the
-source's. *pelvis*: how far it goes down at most where legs are too short for their steps.
+Heels and balls stand where they are slow and low (`kinesphere settings`: `retargeting`). *slide*:
+how far a held point strays along the floor from its middle while it stands, with feet left free
+(as the bones' directions have them) and planted. *heel*: the same of a heel while the ball of its
+foot, which then is the point that is held, stands too; it turns about the ball as in the
+recording. *height*: mean distance of standing points to the scaled height of the source's.
+*pelvis*: how far it goes down at most where legs are too short for their steps.
 """
 _EVENTS = """\
 ## Contacts against the gait lab's events
 
-How much later than the events in the file a contact begins and ends (negative: earlier). A foot's contact ends when
-its ball rises, the lab's when the toes leave the floor.
+How much later than the events in the file a contact begins and ends (negative: earlier). A foot's
+contact ends when its ball rises, the lab's when the toes leave the floor.
 """
 
 
