@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from kinesphere.cli.compare import compare
 from kinesphere.cli.convert import convert
 from kinesphere.cli.demo import demo
 from kinesphere.cli.edit import edit
@@ -51,5 +52,5 @@ def kinesphere(
         typer.echo(context.get_help())
 
 
-for command in (demo, info, label, solve, edit, retarget, convert, model, settings):
+for command in (demo, info, label, solve, edit, retarget, compare, convert, model, settings):
     app.command()(command)

@@ -9,10 +9,10 @@ import numpy as np
 from kinesphere.data.arrays import Array
 from kinesphere.data.figure_names import Part, part_from_name
 from kinesphere.data.figure_shape import parts_by_shape
+from kinesphere.data.rest import default_origins
 from kinesphere.data.skeleton import Skeleton
 from kinesphere.data.tree import below, way_between, way_to_root
 from kinesphere.errors import BadModel
-from kinesphere.geometry.chain import chain_poses
 
 SIDES = ("left", "right")
 NEEDED = tuple(f"{side}_{part}" for part in ("thigh", "shank") for side in SIDES)
@@ -94,16 +94,8 @@ def find_figure(skeleton: Skeleton, given: Mapping[str, str] | None = None) -> F
 
 def rest_places(skeleton: Skeleton) -> Array:
     """Return where each limb hangs in the rest pose, (n_limbs, 3) m, the root at the origin."""
-    n_joints = len(skeleton.joints)
-    still = np.broadcast_to(np.eye(3), (1, n_joints, 3, 3))
-    child = np.array([joint.centre_in_child for joint in skeleton.joints]).reshape(-1, 3)
-    parent = np.array([joint.centre_in_parent for joint in skeleton.joints]).reshape(-1, 3)
-    _, origins = chain_poses(
-        skeleton.parents, np.eye(3)[None], np.zeros((1, 3)), still, parent, child
-    )
-    places = origins[0].copy()
-    places[1:] += child
-    return np.asarray(places)
+    hangs = np.array([np.zeros(3), *(joint.centre_in_child for joint in skeleton.joints)])
+    return np.asarray(default_origins(skeleton) + hangs)
 
 
 def rest_from_body(figure: Figure, places: Array) -> Array:

@@ -91,6 +91,13 @@ register(
 )
 register(
     Format(
+        name="clinical angle table",
+        suffixes=(".csv",),
+        writers={"IsbAngles": "kinesphere.io.isb_csv:write_isb_angles"},
+    )
+)
+register(
+    Format(
         name="CSV",
         suffixes=(".csv",),
         recognises=_is_csv,
@@ -139,6 +146,16 @@ register(
         suffixes=(".asf",),
         recognises=_is_asf,
         reader="kinesphere.io.asf:read_asf",
+    )
+)
+register(
+    Format(
+        name="glTF",
+        suffixes=(".glb", ".gltf"),
+        writers={
+            "Motion": "kinesphere.io.gltf:write_gltf",
+            "Solution": "kinesphere.io.gltf:write_solution_gltf",
+        },
     )
 )
 register(
