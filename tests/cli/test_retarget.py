@@ -158,3 +158,28 @@ def test_convert_and_info_know_motions(call, solved, tmp_path):
     shown = call("info", a)
     assert "cm is guessed" in shown.out
     assert np.isclose(told["rate_hz"], 10.0)
+
+
+def test_onto_the_gltf_of_a_solved_folder(call, solved, tmp_path):
+    rig, out = solved / "motion.glb", tmp_path / "out.glb"
+    done = call("retarget", solved, "--onto", rig, "-o", out)
+    assert done.code == 0, done.err
+    told = json.loads(call("info", out, "--json").out)
+    assert told["figure"]["left_thigh"] == "left_thigh"
+    assert "part" in call("info", out).out
+    as_bvh = call("retarget", solved, "--onto", rig, "-o", tmp_path / "out.bvh")
+    assert as_bvh.code == 0, as_bvh.err
+    names = read(rig).limb_names
+    assert set(read(tmp_path / "out.bvh").skeleton.limb_names) == set(names)
+
+
+def test_the_body_rides_along(performance):
+    from kinesphere.pipeline.surface import surface_for
+
+    truth = Solution(performance.recording, performance.motion, performance.parameters, "cmu41")
+    surface, _ = surface_for(truth.motion, ks.Settings().surface)
+    dressed = replace(truth, surface=surface)
+    small = ks.retarget(dressed, 0.8)
+    assert small.surface is not None
+    assert ks.retarget(truth, 0.8).surface is None
+    assert np.ptp(small.surface.vertices[:, 1]) < 0.9 * np.ptp(surface.vertices[:, 1])

@@ -238,10 +238,20 @@ def test_standing_at_rest_leaves_the_nodes_where_they_were(tmp_path):
     assert at_hips.shape == (4,)
 
 
+@pytest.mark.parametrize("animated", [True, False])
+def test_a_skeleton_needs_no_skin(tmp_path, animated):
+    joints = (1, 2, 3, 4, 5)
+    channels = [{"sampler": 0, "target": {"node": n, "path": "rotation"}} for n in joints]
+    told = document(skins=[], animations=[{"samplers": [], "channels": channels * animated}])
+    names = read_rig(put_glb(tmp_path / "rig.glb", told)).limb_names
+    own = ("Hips", "Leg", "joint_2", "Foot", "Arm")
+    assert names == own if animated else names[0] == "Scene"
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"skins": []}, "no skin"),
+        ({"skins": [], "nodes": [{"mesh": 0}], "scenes": []}, "no skin"),
         ({"skins": [{"joints": [99]}]}, "damaged"),
         ({"skins": [{}]}, "damaged"),
         ({"nodes": [{"children": [0]}], "skins": [{"joints": [0]}]}, "in a circle"),

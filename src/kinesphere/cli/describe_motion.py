@@ -3,7 +3,7 @@
 from typing import Any
 
 from kinesphere.cli.console import print_pairs, print_table, print_title, print_warnings, stdout
-from kinesphere.data import Motion
+from kinesphere.data import Motion, Skeleton
 from kinesphere.data.figure import find_figure
 from kinesphere.errors import BadModel
 from kinesphere.report import number_in_words
@@ -19,7 +19,7 @@ def describe_motion(motion: Motion) -> dict[str, Any]:
         "rate_hz": motion.rate,
         "duration_s": motion.n_frames / motion.rate,
         "seen": float(motion.seen.mean()),
-        **_figure(motion),
+        **describe_figure(motion.skeleton),
         "limbs": [
             {"name": limb.name, "parent": limb.parent, "length_m": limb.length}
             for limb in motion.skeleton.limbs
@@ -28,13 +28,13 @@ def describe_motion(motion: Motion) -> dict[str, Any]:
     }
 
 
-def _figure(motion: Motion) -> dict[str, Any]:
+def describe_figure(skeleton: Skeleton) -> dict[str, Any]:
     """Return which limbs are which parts of a human figure, as retargeting would take them."""
     try:
-        figure = find_figure(motion.skeleton)
+        figure = find_figure(skeleton)
     except BadModel as error:
         return {"figure": None, "figure_from": str(error)}
-    names = motion.skeleton.limb_names
+    names = skeleton.limb_names
     return {
         "figure": {
             "pelvis": names[figure.pelvis],
@@ -61,9 +61,22 @@ def show_motion(summary: dict[str, Any]) -> None:
         pairs.append(("unit", f"{read['metres_per_unit'] * 1e3:.6g} mm"))
     if "up" in read:
         pairs.append(("up in the file", str(read["up"])))
+    _show_limbs(summary, pairs)
+    if summary["warnings"]:
+        print_title(console, "Warnings")
+        print_warnings(console, summary["warnings"])
+
+
+def show_rig(summary: dict[str, Any]) -> None:
+    """Print a skeleton that nobody measured: its limbs, and which parts of a figure they are."""
+    print_title(stdout(), summary["file"], f"a rig of {len(summary['limbs'])} limbs")
+    _show_limbs(summary, [])
+
+
+def _show_limbs(summary: dict[str, Any], pairs: list[tuple[str, str]]) -> None:
+    console = stdout()
     told = summary["figure_from"]
-    pairs.append(("figure", f"found by {told}" if summary["figure"] else told))
-    print_pairs(console, pairs)
+    print_pairs(console, [*pairs, ("figure", f"found by {told}" if summary["figure"] else told)])
     parts: dict[str, str] = {}
     for part, limbs in (summary["figure"] or {}).items():
         for limb in [limbs] if isinstance(limbs, str) else limbs:
@@ -78,6 +91,3 @@ def show_motion(summary: dict[str, Any]) -> None:
         for limb in summary["limbs"]
     ]
     print_table(console, ("limb", "length", "hangs from", "part"), rows, "lrll")
-    if summary["warnings"]:
-        print_title(console, "Warnings")
-        print_warnings(console, summary["warnings"])

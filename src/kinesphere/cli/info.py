@@ -27,7 +27,12 @@ def info(
         show_model,
         show_skeleton,
     )
-    from kinesphere.cli.describe_motion import describe_motion, show_motion
+    from kinesphere.cli.describe_motion import (
+        describe_figure,
+        describe_motion,
+        show_motion,
+        show_rig,
+    )
     from kinesphere.cli.describe_recording import describe_recording, show_recording
     from kinesphere.cli.describe_solution import describe_solution, show_solution
     from kinesphere.data import Motion, Parameters, Recording, Skeleton, Solution, TopologicalModel
@@ -43,7 +48,8 @@ def info(
     elif isinstance(found, TopologicalModel):
         summary = describe_model(found)
     elif isinstance(found, Skeleton | Parameters):
-        summary = describe_skeleton(found if isinstance(found, Skeleton) else found.skeleton)
+        skeleton = found if isinstance(found, Skeleton) else found.skeleton
+        summary = {**describe_skeleton(skeleton), **describe_figure(skeleton)}
     else:
         raise BadArgument(f"{file} holds a {type(found).__name__}, which info cannot describe")
     summary = {"file": str(file), **summary}
@@ -55,6 +61,8 @@ def info(
         show_solution(summary, found)
     elif isinstance(found, Motion):
         show_motion(summary)
+    elif isinstance(found, Skeleton) and not any(joint.n_axes for joint in found.joints):
+        show_rig(summary)
     elif summary["kind"] == "skeleton":
         show_skeleton(summary)
     else:

@@ -53,6 +53,10 @@ def _is_bvh(head: bytes) -> bool:
     return _text(head)[:9].upper() == b"HIERARCHY"
 
 
+def _is_gltf(head: bytes) -> bool:
+    return head.startswith(b"glTF") or (_text(head).startswith(b"{") and b'"asset"' in head)
+
+
 def _is_asf(head: bytes) -> bool:
     return _has_section(head, b":version", b":units", b":root", b":bonedata")
 
@@ -152,6 +156,8 @@ register(
     Format(
         name="glTF",
         suffixes=(".glb", ".gltf"),
+        recognises=_is_gltf,
+        reader="kinesphere.io.rig_gltf:read_gltf_skeleton",
         writers={
             "Motion": "kinesphere.io.gltf:write_gltf",
             "Solution": "kinesphere.io.gltf:write_solution_gltf",

@@ -35,12 +35,12 @@ class _Joints(NamedTuple):
 
 
 def read_gltf_skeleton(path: str | Path) -> Skeleton:
-    """Read the skeleton of the first skin.
+    """Read the skeleton of the first skin; without one, that of the nodes that are animated.
 
     Raises
     ------
     UnreadableFile
-        If the file is damaged or has no skin.
+        If the file is damaged or holds no skeleton.
     """
     path = Path(path)
     joints = _joints(parse_gltf(path).json, path)
@@ -104,11 +104,11 @@ def _joints(document: dict[str, Any], path: Path) -> _Joints:
 
 
 def _found_joints(document: dict[str, Any], path: Path) -> _Joints:
-    nodes, skins = document.get("nodes", []), document.get("skins", [])
-    if not skins:
-        raise UnreadableFile(f"{path} has no skin, hence no skeleton to put a motion on")
+    nodes = document.get("nodes", [])
     parent_of = {child: i for i, node in enumerate(nodes) for child in node.get("children", [])}
-    inside = {int(joint) for joint in skins[0]["joints"]}
+    inside = _inside(document)
+    if not inside:
+        raise UnreadableFile(f"{path} has no skin and no nodes that turn: no skeleton to move")
     if len(inside) > MOST_JOINTS:
         raise UnreadableFile(f"{path}: {len(inside)} joints; at most {MOST_JOINTS} are read")
     ways = [_way(joint, parent_of, path) for joint in sorted(inside)]
@@ -141,6 +141,24 @@ def _found_joints(document: dict[str, Any], path: Path) -> _Joints:
         name = str(nodes[node].get("name") or f"joint_{i}")
         names.append(name if name not in names else f"{name}_{node}")
     return _Joints(order, names, parents, rest, around)
+
+
+def _inside(document: dict[str, Any]) -> set[int]:
+    """Return the joints of the first skin; without one the nodes that an animation turns."""
+    if skins := document.get("skins", []):
+        return {int(joint) for joint in skins[0]["joints"]}
+    turned = {
+        int(channel["target"]["node"])
+        for animation in document.get("animations", [])
+        for channel in animation["channels"]
+        if channel["target"]["path"] == "rotation" and "node" in channel["target"]
+    }
+    bare = {
+        i
+        for i, node in enumerate(document.get("nodes", []))
+        if not {"mesh", "camera", "extensions"} & set(node)
+    }
+    return turned or bare
 
 
 def _way(node: int, parent_of: dict[int, int], path: Path) -> list[int]:

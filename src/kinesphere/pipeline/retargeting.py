@@ -10,6 +10,7 @@ from kinesphere.data import Motion, Recording, Skeleton, Solution, Step
 from kinesphere.editing import RetargetSettings, retarget_motion, scaled_skeleton
 from kinesphere.pipeline.retarget_parameters import parameters_like
 from kinesphere.pipeline.settings import Settings
+from kinesphere.pipeline.surface import surface_for
 
 
 @overload
@@ -95,12 +96,16 @@ def retarget(
     if not isinstance(source, Solution) or isinstance(onto, Skeleton):
         return done
     parameters = parameters_like(done, source, whole.parameterization)
+    surface = None
+    if source.surface is not None:
+        surface, step = surface_for(done, whole.surface)
+        parameters = replace(parameters, history=(*parameters.history, step))
     return Solution(
         recording=_recording(done, done.history[-1]),
         motion=done,
         parameters=parameters,
         model_name=source.model_name,
-        seconds={},
+        surface=surface,
     )
 
 
