@@ -228,3 +228,14 @@ def test_a_bare_recording_shows_its_markers(view, solution, tmp_path):
     assert watched.viewer.posing is None
     assert watched.page.get_by_text("Pose", exact=True).count() == 0
     type_in(watched, "Frame", 20, lambda: watched.viewer.frame == 19)
+
+
+def test_a_motion_of_another_program_shows_its_skeleton(view, solution, tmp_path):
+    path = tmp_path / "walk.bvh"
+    write(solution.motion, path)
+    watched = view(path)
+    assert watched.page.get_by_text("Pose", exact=True).count() == 0
+    watched.page.get_by_role("checkbox", name="Limb frames").check()
+    watched.until(lambda: watched.viewer.stage.kinds.get("frames"))
+    type_in(watched, "Frame", 20, lambda: watched.viewer.frame == 19)
+    assert watched.viewer.stage.kinds == {"skeleton": True, "frames": True}

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from kinesphere.errors import BadRecording, BadSetting
 from kinesphere.viewer import serve, take_from
@@ -30,6 +31,17 @@ def test_a_recording_is_turned_upright(solution):
     assert high - low > 1.2
     assert low > -0.3
     assert take.at(3)[0] is None
+
+
+def test_a_motion_shows_its_skeleton_and_cannot_be_edited(solution):
+    take = take_from(solution.motion, "walk.bvh")
+    assert take.poses is None
+    assert take.skeleton is solution.motion.skeleton
+    rotations, origins, markers = take.at(5)
+    assert_array_equal(rotations, solution.motion.rotations[5])
+    assert_array_equal(origins, solution.motion.origins[5])
+    assert markers.shape == (0, 3)
+    assert take.middle() == pytest.approx(solution.motion.origins[0].mean(axis=0))
 
 
 @pytest.mark.parametrize("spoilt", ["no frames", "nothing seen", "no recording"])

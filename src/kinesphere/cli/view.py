@@ -10,7 +10,7 @@ from kinesphere.cli.options import BadArgument, JsonOption
 
 def view(
     path: Annotated[
-        Path, typer.Argument(metavar="FILE|DIR", help="A recording, or a solved folder.")
+        Path, typer.Argument(metavar="FILE|DIR", help="A recording, a motion, or a solved folder.")
     ],
     edits: Annotated[
         Path | None,
@@ -39,9 +39,9 @@ def view(
 ) -> None:
     """Look at a motion in the browser, and change it: until Ctrl-C.
 
-    A recording shows its markers. A solved folder shows the skeleton, limb frames and movement
-    axes as well; pick a limb, turn it about its own axes at a frame, over a range or throughout,
-    undo, and save what `kinesphere edit` applies.
+    A recording shows its markers, a motion (BVH, ASF/AMC) its skeleton. A solved folder shows
+    both, with limb frames and movement axes; pick a limb, turn it about its own axes at a frame,
+    over a range or throughout, undo, and save what `kinesphere edit` applies.
 
     Example: [bold]kinesphere view walk[/bold]
     """
@@ -54,7 +54,7 @@ def view(
 
     take = take_from(read(path), str(path))
     if take.solution is None and edits is not None:
-        raise BadArgument(f"{path} is not solved yet, so there is nothing to edit; solve it first")
+        raise BadArgument(f"{path} is no solved folder: nothing can be edited; solve it first")
     resolved = path.resolve()
     saved = edits if edits is not None else resolved.with_name(f"{resolved.name}.edits.toml")
     if edits is not None:

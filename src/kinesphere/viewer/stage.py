@@ -46,10 +46,13 @@ class Stage:
     ) -> None:
         self.server = server
         self.figure = None if skeleton is None else Figure(skeleton)
-        self.kinds = {"markers": True}
+        self.kinds = {"markers": True} if labels else {}
         """What there is to show, and whether it is shown."""
         if skeleton is not None:
-            self.kinds |= {"skeleton": True, "axes": False, "frames": False}
+            self.kinds["skeleton"] = True
+            if any(joint.n_axes for joint in skeleton.joints):
+                self.kinds["axes"] = False
+            self.kinds["frames"] = False
         self._nodes: dict[str, Any] = {}
         scene = server.scene
         scene.set_up_direction("+y")
@@ -163,7 +166,7 @@ class Stage:
             self._nodes["markers"].on_click(clicked)
 
     def _on(self, name: str) -> bool:
-        return self.kinds[name] and name in self._nodes
+        return self.kinds.get(name, False)
 
     def _place(self, name: str, placed: Placed) -> None:
         node = self._nodes[name]

@@ -47,7 +47,7 @@ class Viewer:
         self.panel = Panel(
             server,
             (self.first, recording.n_frames, self.rate),
-            take.skeleton,
+            None if take.poses is None else take.skeleton,
             take.notes,
             self.stage.kinds,
         )
