@@ -23,8 +23,8 @@ def page(films: Sequence[Outcome], real: Sequence[RealOutcome], n_frames: int) -
         f"{ASTRAY * 1e3:.0f} mm from the truth. Of several seeds the worst is shown. Speed is that "
         "of tracking alone: without rendering, start and fitting of the shape.",
         "",
-        "| film | start | cameras | seeds | elbows, mean (limit) | elbows, RMS (limit) | joints, mean "
-        "(limit) | joints, 95 % | frames astray | unsolved | overlap | frames/s | |",
+        "| film | start | cameras | seeds | elbows, mean (limit) | elbows, RMS (limit) | joints, "
+        "mean (limit) | joints, 95 % | frames astray | unsolved | overlap | frames/s | |",
         "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|",
     ]
     for case in dict.fromkeys(outcome.case for outcome in films):
