@@ -23,11 +23,7 @@ from kinesphere.geometry.chain import joint_rotations
 from kinesphere.geometry.vectors import lengths
 from kinesphere.parameterization.anatomy import human_plan, without_side
 from kinesphere.parameterization.angles import JointAngles
-from kinesphere.parameterization.joint import (
-    JointFit,
-    fit_joint,
-    solve_joint,
-)
+from kinesphere.parameterization.joint import JointFit, solve_joint
 from kinesphere.parameterization.measures import (
     lever,
     mid_point_residuals,
@@ -40,6 +36,7 @@ from kinesphere.parameterization.settings import (
     parse_counts,
     parse_windows,
 )
+from kinesphere.parameterization.third_axis import fit_axes
 from kinesphere.parameterization.view import reliable_frames, view_joint
 
 TORN = 0.02  # m, joints closer together than this are never called dislocated
@@ -111,7 +108,7 @@ def parameterize(
             settings,
             human,
         )
-        fit = _reused(joint.name, reuse) or fit_joint(view, settings)
+        fit = _reused(joint.name, reuse) or fit_axes(view, settings)
         solved = solve_joint(view, fit.axes, fit.rest, settings)
         rebuilt = joint_rotations(fit.axes, fit.rest, limb.long_axis, solved.angles, solved.twists)
         mid_point = lever(joint.centre_in_child, limb.length, limb.long_axis)
