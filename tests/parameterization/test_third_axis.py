@@ -9,7 +9,8 @@ from kinesphere.geometry.chain import joint_rotations
 from kinesphere.geometry.rotations import rotation_angle, rotation_exp
 from kinesphere.parameterization.anatomy import MIRROR
 from kinesphere.parameterization.axes.kernels import turned_between
-from kinesphere.parameterization.axes.twist_phases import find_twist_axis
+from kinesphere.parameterization.axes.twist_phases import TwistAxis, find_twist_axis
+from kinesphere.parameterization.confidence import TISSUE
 from kinesphere.parameterization.joint import solve_joint
 from kinesphere.parameterization.settings import AxesSettings, ParameterizationSettings
 from kinesphere.parameterization.third_axis import fit_axes
@@ -29,16 +30,19 @@ def off_limb(degrees):
     return np.array([np.sin(angle), -np.cos(angle), 0.0])
 
 
-def move(rng, strokes, third):
-    """Return rotations, (n, 3, 3): two seconds of rest and a stroke of 2 s, over and over.
+TO_AND_FRO = np.sin(np.linspace(0, 2 * np.pi, 50))
+TO_ONE_SIDE = np.sin(np.linspace(0, np.pi, 50)) ** 2
+
+
+def move(rng, strokes, third, course=TO_AND_FRO, axes=(ABDUCTION, FLEXION)):
+    """Return rotations, (n, 3, 3): two seconds of rest, then a stroke of 2 s, over and over.
 
     A stroke is deg about flexion, abduction and the third axis (fixed in the child), with a fourth
     number by which the limb is flexed all the while.
     """
-    n = round(4 * RATE)
-    course = np.zeros(n)
-    course[-round(2 * RATE) :] = np.sin(np.linspace(0, 2 * np.pi, round(2 * RATE)))
-    angles = np.concatenate([course[:, None] * stroke[:3] for stroke in strokes])
+    n = 50 + len(course)
+    played = np.concatenate([np.zeros(50), course])
+    angles = np.concatenate([played[:, None] * stroke[:3] for stroke in strokes])
     held = np.repeat([stroke[3] for stroke in strokes], n).astype(float)
     held = np.concatenate([np.repeat(held[0], 20), held[:-20]])  # it bends while it rests
     bell = np.hanning(21) / np.hanning(21).sum()
@@ -46,7 +50,7 @@ def move(rng, strokes, third):
     angles = np.deg2rad(angles + SWAY * rng.normal(size=angles.shape))
     angles[:, 0] += np.deg2rad(change)
     turned = np.eye(3)
-    for axis, angle in zip((third, ABDUCTION, FLEXION), angles.T[[2, 1, 0]], strict=True):
+    for axis, angle in zip((third, *axes), angles.T[[2, 1, 0]], strict=True):
         turned = rotation_exp(angle[:, None] * axis) @ turned
     return turned
 
@@ -55,10 +59,10 @@ SWINGS = [(45, 0, 0, 0)] * 3 + [(0, 40, 0, 0)] * 3
 THREE = [*SWINGS, *[(0, 0, 35, 0)] * 3]
 
 
-def view(rotations, name="left_hip", limb=LIMB, known=None, settings=DEFAULTS):
+def view(rotations, name="left_hip", limb=LIMB, known=None, settings=DEFAULTS, among=None):
     everywhere = np.ones(len(rotations), dtype=bool)
-    known = everywhere if known is None else known
-    return view_joint(name, rotations, limb, known, RATE, everywhere, settings)
+    known, among = (everywhere if mask is None else mask for mask in (known, among))
+    return view_joint(name, rotations, limb, known, RATE, among, settings)
 
 
 def off(axis, true):
@@ -116,6 +120,84 @@ def test_it_is_fixed_in_the_child_whatever_the_posture(rng):
     twist = find_twist_axis(view(rotations).samples, DEFAULTS)
     assert off(twist.axis, off_limb(8.0)) < CLOSE
     assert len(twist.phases) == 3
+
+
+def test_postures_on_both_sides_of_a_gap_are_movements_of_their_own(rng):
+    bent = [(0, 0, 35, 0), (0, 0, 35, 30), (0, 0, 35, 60)]
+    rotations = move(rng, bent, off_limb(8.0))
+    strokes = np.arange(len(rotations)) % 100 >= 48
+    twist = find_twist_axis(view(rotations, among=strokes).samples, DEFAULTS)
+    assert len(twist.phases) == 3
+    assert off(twist.axis, off_limb(8.0)) < CLOSE
+
+
+def test_small_turns_do_not_count(rng):
+    twist = find_twist_axis(
+        view(move(rng, [*SWINGS, *[(0, 0, 35, 0)] * 3, (0, 0, 5, 0)], off_limb(8.0))).samples,
+        DEFAULTS,
+    )
+    assert len(twist.phases) == 3
+
+
+def test_a_long_turn_weighs_as_much_as_it_lasts(rng):
+    slow = np.sin(np.linspace(0, 20 * np.pi, 1000))
+    short = move(rng, [(0, 0, 35, 0)] * 3, off_limb(4.0))
+    long = move(rng, [(0, 0, 35, 0)], off_limb(12.0), course=slow)
+    twist = find_twist_axis(view(np.concatenate([short, long])).samples, DEFAULTS)
+    assert off(twist.axis, off_limb(0.0)) == pytest.approx((150 * 4 + 1000 * 12) / 1150, abs=0.3)
+
+
+def test_how_well_the_axis_is_conditioned_and_known(rng):
+    rotations = move(rng, [(0, 0, 35, 0)] * 4, LIMB)
+    wobble = np.deg2rad(8.0) * np.cos(np.linspace(0, 2 * np.pi, 50))
+    for start in range(50, len(rotations), 100):
+        during = slice(start, start + 50)
+        rotations[during] = rotation_exp(wobble[:, None] * FLEXION) @ rotations[during]
+    twist = find_twist_axis(view(rotations).samples, DEFAULTS)
+    assert twist.conditioning == pytest.approx((35 / 8) ** 2, rel=0.2)
+    told = TwistAxis(LIMB, (), np.deg2rad(30.0), 9.0, np.deg2rad(4.0))
+    assert told.uncertainty == pytest.approx(np.hypot(np.deg2rad(2.0), TISSUE / np.deg2rad(30.0)))
+
+
+def test_a_limb_that_wags_meanwhile_does_not_turn_about_itself_alone(rng):
+    twice = np.sin(np.linspace(0, 4 * np.pi, 100))
+    rotations = move(rng, [(0, 0, 35, 0)] * 4, LIMB, course=twice)
+    plain = view(rotations.copy())
+    assert find_twist_axis(plain.samples, DEFAULTS) is not None
+    wag = np.deg2rad(15.0) * np.sin(np.linspace(0, 8 * np.pi, 100))
+    for start in range(50, len(rotations), 150):
+        during = slice(start, start + 100)
+        rotations[during] = rotation_exp(wag[:, None] * FLEXION) @ rotations[during]
+    assert find_twist_axis(view(rotations).samples, DEFAULTS) is None
+
+
+def test_much_noise_hides_no_third_axis(rng, skin):
+    rest = [(0, 0, 0, 0)] * 8
+    for _ in range(4):
+        rotations = move(rng, [*rest, *SWINGS, *[(0, 0, 40, 0)] * 4, *rest], off_limb(8.0))
+        noise = skin(rng, len(rotations), RATE, 3.0)
+        twist = find_twist_axis(view(rotation_exp(noise) @ rotations).samples, DEFAULTS)
+        assert len(twist.phases) >= 3
+        assert off(twist.axis, off_limb(8.0)) < 4.0
+
+
+def test_turns_to_one_side_do_not_move_the_zero(rng):
+    strokes = [(0, 0, 70, 0)] * 8
+    swings = move(rng, SWINGS, LIMB)
+    turns = move(rng, strokes, LIMB, course=TO_ONE_SIDE)
+    seen = view(np.concatenate([swings, turns]))
+    fit = fit_axes(seen, DEFAULTS)
+    assert len(fit.axes) == 3
+    assert np.rad2deg(rotation_angle(fit.rest)) < 0.5  # it rested there, aligned with its parent
+
+
+def test_two_axes_that_are_one_stay_two(rng):
+    hinge = rotation_exp(np.deg2rad(28.0) * FLEXION) @ LIMB
+    strokes = [(0, 80, 0, 0)] * 4 + [(0, 0, 35, 0)] * 3
+    third = off_limb(10.0)  # 18° from the hinge
+    seen = view(move(rng, strokes, third, axes=(hinge, FLEXION)), "joint_04")
+    assert find_twist_axis(seen.samples, DEFAULTS) is not None
+    assert len(fit_axes(seen, DEFAULTS).axes) == 1
 
 
 @pytest.mark.parametrize(
@@ -182,9 +264,10 @@ def test_a_hinge_that_turns_about_itself_gets_an_axis_across_both(rng):
 
 
 def test_joints_nobody_named_have_one_too(rng):
-    fit = fit_axes(view(move(rng, THREE, off_limb(8.0)), "joint_04"), DEFAULTS)
+    seen = view(move(rng, [*SWINGS, *[(0, 0, -35, 0)] * 3], off_limb(8.0)), "joint_04")
+    fit = fit_axes(seen, DEFAULTS)
     assert len(fit.axes) == 3
-    angles = solve_joint(view(move(rng, THREE, off_limb(8.0))), fit.axes, fit.rest, DEFAULTS).angles
+    angles = solve_joint(seen, fit.axes, fit.rest, DEFAULTS).angles
     for column in angles.T:
         first = column[np.abs(column) > np.abs(column).max() / 2][0]
         assert first > 0

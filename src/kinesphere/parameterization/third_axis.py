@@ -117,7 +117,7 @@ def _joined(
             for name, value in zip(PER_AXIS, own, strict=True)
         },
     }
-    return replace(fit, axes=axes, uncertainty=uncertainty, findings=findings, added="")
+    return replace(fit, axes=axes, uncertainty=uncertainty, findings=findings)
 
 
 def _listed(value: Json) -> list[Json]:

@@ -19,7 +19,6 @@ from kinesphere.parameterization.settings import ParameterizationSettings
 
 NEAR = np.cos(np.deg2rad(15.0))  # of the limb: pronation is 5-10° off the forearm's line; hips of
 # somebody who turns the trunk showed 20°, an elbow of somebody who bends 24°: turns of two joints
-SAME = np.cos(np.deg2rad(15.0))  # phases about one axis
 KNOWN = np.deg2rad(5.0)  # the limb's own line is as near as that to what people twist about
 LEAST = 2.0  # s of twisting: less is no movement made on purpose
 PURER = 1.0  # times: what is not about the axis, of what a main movement may have
@@ -71,13 +70,7 @@ def find_twist_axis(samples: JointSamples, settings: ParameterizationSettings) -
     """
     phases = _pure(samples, settings)
     axis = _pooled(samples, phases)
-    if axis is None:
-        return None
-    phases = tuple(phase for phase in phases if abs(_main(samples, phase)[1] @ axis) > SAME)
-    axis = _pooled(samples, phases)
-    if axis is None or axis @ samples.long_axis < NEAR:
-        return None
-    if sum(b - a for a, b in phases) < LEAST * samples.rate:
+    if axis is None or sum(b - a for a, b in phases) < LEAST * samples.rate:
         return None
     turned = [_turns(samples, phase) for phase in phases]
     values = np.linalg.eigvalsh(sum(w.T @ w for w in turned))
