@@ -22,7 +22,7 @@ from kinesphere.errors import BadSetting
 from kinesphere.geometry.chain import joint_rotations
 from kinesphere.geometry.vectors import lengths
 from kinesphere.parameterization.anatomy import human_plan, without_side
-from kinesphere.parameterization.angles import JointAngles
+from kinesphere.parameterization.angles import JointAngles, unwrapped
 from kinesphere.parameterization.joint import JointFit, solve_joint
 from kinesphere.parameterization.measures import (
     lever,
@@ -137,6 +137,8 @@ def parameterize(
             **result_findings(residuals[:, j], twists[:, j], flags[:, j]),
             **paper_measures(rotations, rebuilt, limb.long_axis, mid_point),
         }
+    if settings.angles.unwrap:
+        angles, twists = unwrapped(angles), unwrapped(twists)
     warnings = stage_warnings(seen, fits, settings.axes.method)
     own = [name for name, fit in fits.items() if fit.source != "reused"]
     if reuse is not None and own:
