@@ -433,6 +433,24 @@ def test_a_walker_is_averaged_over_strides(tools, rng):
     assert apart(single.rotations[:, 0], it.truth[:, 0]) > np.deg2rad(5)
 
 
+def test_of_strides_the_frames_serve_in_which_shoulders_and_pelvis_face_alike(
+    tools, rng, monkeypatch
+):
+    time = np.arange(300) / 50.0
+    bends = {"trunk": np.outer(np.deg2rad(12) * np.sin(2 * np.pi * time), [0, 1.0, 0])}
+    it = tools.make_doll(rng, n_frames=300, bends=bends, walk=np.outer(1.3 * time, [1.0, 0, 0]))
+    half = normalize(it.motion)
+    monkeypatch.setattr("kinesphere.normalization.default_frames._ALIKE", 1.0)
+    whole = normalize(it.motion)
+    found, before = step_of(half).findings, step_of(whole).findings
+    # of a sine the rms is 0.71, that of the half nearest to its middle 0.40
+    assert found["spread_rms_deg"] < 0.7 * before["spread_rms_deg"]
+    assert set(found["frames_averaged"]) < set(before["frames_averaged"])
+    assert found["n_frames_averaged"] == pytest.approx(before["n_frames_averaged"] / 2, abs=4)
+    for motion in (half, whole):
+        assert apart(motion.rotations[:, 0], it.truth[:, 0]) < np.deg2rad(1.0)
+
+
 def test_shoulders_that_turn_in_the_stance_are_flagged(tools, rng):
     yaw = np.deg2rad(np.concatenate([np.full(60, 18.0), np.full(60, -18.0)]))
     it = tools.make_doll(rng, n_frames=120, bends={"trunk": np.outer(yaw, [0, 1.0, 0])})
