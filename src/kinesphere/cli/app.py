@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from kinesphere.cli.compare import compare
 from kinesphere.cli.convert import convert
 from kinesphere.cli.demo import demo
 from kinesphere.cli.edit import edit
@@ -50,5 +51,5 @@ def kinesphere(
         typer.echo(context.get_help())
 
 
-for command in (demo, info, label, solve, edit, convert, model, settings):
+for command in (demo, info, label, solve, edit, compare, convert, model, settings):
     app.command()(command)

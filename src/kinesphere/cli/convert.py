@@ -20,7 +20,8 @@ def convert(
 
     Nothing is lost where both can hold it. A recording goes to [bold].c3d[/bold],
     [bold].trc[/bold] or [bold].csv[/bold]; a solved folder to these (its angles, as
-    [bold].csv[/bold]), to [bold].bvh[/bold], [bold].osim[/bold], [bold].mot[/bold],
+    [bold].csv[/bold]), to [bold].bvh[/bold], [bold].glb[/bold] and
+    [bold].gltf[/bold] (with the body), [bold].osim[/bold], [bold].mot[/bold],
     [bold].json[/bold] (its skeleton) and [bold].limbs.csv[/bold] (the frame of every limb).
 
     Examples: [bold]kinesphere convert walk.c3d walk.trc[/bold],
@@ -57,7 +58,7 @@ def part_for(solution: "Solution", target: Path) -> object:
     """Return what of a solution the target's format holds: the parameters rather than markers."""
     from kinesphere.io import known_formats
 
-    parts = (solution.motion, solution.parameters, solution.skeleton, solution.recording)
+    parts = (solution, solution.motion, solution.parameters, solution.skeleton, solution.recording)
     suffix = target.suffix.lower()
     for part in parts:
         kind = type(part).__name__

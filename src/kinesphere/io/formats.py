@@ -73,6 +73,13 @@ register(
 )
 register(
     Format(
+        name="clinical angle table",
+        suffixes=(".csv",),
+        writers={"IsbAngles": "kinesphere.io.isb_csv:write_isb_angles"},
+    )
+)
+register(
+    Format(
         name="CSV",
         suffixes=(".csv",),
         recognises=_is_csv,
@@ -103,6 +110,16 @@ register(
         name="BVH",
         suffixes=(".bvh",),
         writers={"Motion": "kinesphere.io.bvh:write_bvh"},
+    )
+)
+register(
+    Format(
+        name="glTF",
+        suffixes=(".glb", ".gltf"),
+        writers={
+            "Motion": "kinesphere.io.gltf:write_gltf",
+            "Solution": "kinesphere.io.gltf:write_solution_gltf",
+        },
     )
 )
 register(

@@ -7,10 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from kinesphere.data import Recording, Solution
+from kinesphere.data.isb import isb_angles
 from kinesphere.errors import BadSetting, UnreadableFile
 from kinesphere.io.atomic import check_directory_place, replacing_directory
 from kinesphere.io.bvh import write_bvh
 from kinesphere.io.c3d import read_c3d, write_c3d
+from kinesphere.io.gltf import write_solution_gltf
+from kinesphere.io.isb_csv import write_isb_angles
 from kinesphere.io.opensim import write_osim
 from kinesphere.io.opensim_joints import opensim_name
 from kinesphere.io.opensim_motion import write_mot
@@ -22,11 +25,14 @@ from kinesphere.io.trc import write_trc
 
 ARRAYS = "solution.npz"
 RECORDING = "recording.c3d"
+MOTION_GLB = "motion.glb"
+"""Older folders are whole without it."""
 FILES = (
     RECORDING,
     "skeleton.json",
     "parameters.csv",
     "motion.bvh",
+    MOTION_GLB,
     "motion.trc",
     "motion.mot",
     "motion.osim",
@@ -34,7 +40,9 @@ FILES = (
     "summary.json",
 )
 """What ``write_solution`` writes by itself."""
-_BESIDE = ("report.html", ".DS_Store", "Thumbs.db", "desktop.ini")
+ISB_ANGLES = "isb_angles.csv"
+"""Written where joints have names; older folders are whole without it."""
+_BESIDE = (ISB_ANGLES, "report.html", ".DS_Store", "Thumbs.db", "desktop.ini")
 """What may stand beside them: the report, and what file managers leave wherever they look."""
 _C3D = "c3d"
 
@@ -60,7 +68,7 @@ def write_solution(
     """
     extra = dict(extra or {})
     for name in extra:
-        if name in ("", "..") or Path(name).name != name or name in FILES:
+        if name in ("", "..") or Path(name).name != name or name in (*FILES, ISB_ANGLES):
             raise BadSetting(f"{name!r} cannot be added: a plain name was expected, and a new one")
     recording, skeleton = solution.recording, solution.skeleton
     details = {k: None if k == _C3D else v for k, v in recording.details.items()}
@@ -69,7 +77,10 @@ def write_solution(
         write_c3d(_with_joint_centres(solution), folder / RECORDING)
         write_skeleton(skeleton, folder / "skeleton.json")
         write_parameters(solution.parameters, folder / "parameters.csv")
+        if (clinical := isb_angles(solution.motion, skeleton)).joints:
+            write_isb_angles(clinical, folder / ISB_ANGLES)
         write_bvh(solution.motion, folder / "motion.bvh")
+        write_solution_gltf(solution, folder / MOTION_GLB)
         write_trc(_model_markers(solution), folder / "motion.trc")
         write_mot(solution.parameters, folder / "motion.mot")
         write_osim(skeleton, folder / "motion.osim")
@@ -115,7 +126,8 @@ def read_solution(directory: str | Path) -> Solution:
         raise UnreadableFile(f"{directory} is {found}; a solved folder was expected")
     if not (directory / ARRAYS).is_file():
         raise UnreadableFile(f"{directory} holds no {ARRAYS}: it is no solved folder")
-    if missing := [name for name in FILES if not (directory / name).is_file()]:
+    wanted = (name for name in FILES if name != MOTION_GLB)
+    if missing := [name for name in wanted if not (directory / name).is_file()]:
         raise UnreadableFile(f"{directory} is not whole: {', '.join(missing)} missing")
     solution = read_solution_arrays(directory / ARRAYS)
     solution = replace(solution, seconds=read_seconds(directory / "summary.json"))

@@ -7,6 +7,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, get_type_hints
 
+from kinesphere.editing import SurfaceSettings
 from kinesphere.errors import BadSetting, UnreadableFile
 from kinesphere.labelling import LabellingSettings
 from kinesphere.normalization import NormalizationSettings
@@ -26,6 +27,7 @@ class Settings:
     skeleton: SkeletonSettings = field(default_factory=SkeletonSettings)
     normalization: NormalizationSettings = field(default_factory=NormalizationSettings)
     parameterization: ParameterizationSettings = field(default_factory=ParameterizationSettings)
+    surface: SurfaceSettings = field(default_factory=SurfaceSettings)
 
 
 def stage_settings(settings: Any) -> dict[str, Any]:
