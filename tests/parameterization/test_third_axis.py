@@ -82,6 +82,10 @@ def test_what_the_limb_turns_about_is_the_most_distal_axis(rng, tilt):
     assert len(fit.findings["twist_phases_s"]) == 3
     for span, start in zip(fit.findings["twist_phases_s"], (26, 30, 34), strict=True):
         assert span == pytest.approx([start, start + 2], abs=0.3)
+    every = fit.findings["phases_s"]  # what the report shades
+    assert every == sorted(every)
+    assert len(every) == 9
+    assert all(span in every for span in fit.findings["twist_phases_s"])
     assert np.rad2deg(fit.uncertainty).max() < 5
     lists = ("ranges_deg", "conditioning", "halves_disagreement_deg", "axes_uncertainty_deg")
     assert [len(fit.findings[name]) for name in lists] == [3, 3, 3, 3]

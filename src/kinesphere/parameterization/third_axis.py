@@ -101,14 +101,16 @@ def _joined(
     halves = float(np.rad2deg(twist.halves))
     own = (float(np.rad2deg(twist.range)), twist.conditioning, halves)
     observed = fit.findings["n_axes_by_data"]
-    times = view.samples.with_phases(twist.phases).phase_times
+    spans: list[Json] = [list(t) for t in view.samples.with_phases(twist.phases).phase_times]
+    swung = _listed(fit.findings.get("phases_s"))
     findings: Mapping[str, Json] = {
         **fit.findings,
         "n_axes": 3,
         "n_axes_by_data": observed + 1 if isinstance(observed, int) else None,
         "axes_uncertainty_deg": [float(u) if u == u else None for u in np.rad2deg(uncertainty)],
         "axes_apart_deg": angles_between(axes),
-        "twist_phases_s": [list(span) for span in times],
+        "phases_s": sorted([*swung, *spans], key=_start),
+        "twist_phases_s": spans,
         "twist_axis_off_limb_deg": float(
             np.rad2deg(np.arccos(min(1.0, float(twist.axis @ view.long_axis))))
         ),
@@ -122,3 +124,7 @@ def _joined(
 
 def _listed(value: Json) -> list[Json]:
     return value if isinstance(value, list) else []
+
+
+def _start(span: Json) -> float:
+    return float(span[0]) if isinstance(span, list) and isinstance(span[0], float) else 0.0
