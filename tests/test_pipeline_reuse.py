@@ -19,7 +19,7 @@ def performance():
 def known(skeleton, **degrees):
     """Return a skeleton whose joints are measured as well as given, in deg; others are the body's.
 
-    A joint's axes are turned over, so that one can see from where they come.
+    Axes and rests of measured ones are negated, so that one can see from where they come.
     """
     joints = []
     for joint in skeleton.joints:
@@ -29,6 +29,8 @@ def known(skeleton, **degrees):
             if told is None
             else replace(
                 joint,
+                axes=-joint.axes,
+                rest=-joint.rest,  # no rotation, but easily seen
                 axes_source="movement",
                 axes_uncertainty=np.deg2rad(np.full(joint.n_axes, told)),
             )
@@ -43,7 +45,8 @@ def test_each_joint_takes_the_axes_that_are_known_best(performance):
     bearing, chosen = with_best_axes(plain, [first, second])
     assert chosen == {"left_knee": 1, "left_hip": 0, "neck": 1}
     assert bearing.joint("left_knee").axes_uncertainty == pytest.approx(np.deg2rad(1.0))
-    assert_array_equal(bearing.joint("neck").rest, plain.joint("neck").rest)
+    assert_array_equal(bearing.joint("neck").rest, -plain.joint("neck").rest)
+    assert_array_equal(bearing.joint("neck").axes, -plain.joint("neck").axes)
     for joint in bearing.joints:
         assert (joint.axes is None) == (joint.name not in chosen)
         assert (joint.rest is None) == (joint.name not in chosen)
@@ -92,10 +95,17 @@ def test_one_solution_several_or_none(performance):
 def test_a_trial_for_each_joint(performance):
     whole = solve(performance.recording, performance.model)
     names = whole.skeleton.joint_names
-    trials = [
-        known(whole.skeleton, **{name: 1.0 for name in names if name.endswith(kind)})
-        for kind in ("knee", "hip")
-    ]
+
+    def only(kind):
+        return replace(
+            whole.skeleton,
+            joints=tuple(
+                replace(j, axes_source="movement" if j.name.endswith(kind) else "body")
+                for j in whole.skeleton.joints
+            ),
+        )
+
+    trials = [only("knee"), only("hip")]
     again = solve(performance.recording, performance.model, calibration_from=trials)
     for joint in again.skeleton.joints:
         mine = joint.name.endswith(("knee", "hip"))
