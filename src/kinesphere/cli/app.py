@@ -14,6 +14,7 @@ from kinesphere.cli.learn import model
 from kinesphere.cli.retarget import retarget
 from kinesphere.cli.settings import settings
 from kinesphere.cli.solve import solve
+from kinesphere.cli.track import track
 from kinesphere.cli.view import view
 
 app = typer.Typer(
@@ -54,16 +55,6 @@ def kinesphere(
 
 
 for command in (
-    demo,
-    info,
-    label,
-    solve,
-    view,
-    edit,
-    retarget,
-    compare,
-    convert,
-    model,
-    settings,
-):
+    demo, info, label, solve, track, view, edit, retarget, compare, convert, model, settings,
+):  # fmt: skip
     app.command()(command)

@@ -33,9 +33,10 @@ SCRIPTS = (
     "page.js",
 )
 """The page's own program, in the order in which the parts build on each other."""
+_NOTHING = Markup()
 
 
-def report_html(solution: Solution, title: str = "") -> str:
+def report_html(solution: Solution, title: str = "", extra: Markup = _NOTHING) -> str:
     """Return the report of a solution as one self-contained HTML page.
 
     The page holds a player of the motion, the curve of every angle and residual, and a table a
@@ -48,6 +49,8 @@ def report_html(solution: Solution, title: str = "") -> str:
         As ``kinesphere.solve`` returns it.
     title
         A name for the recording; its model and length, if empty.
+    extra
+        A further section: `tracking_section` of a motion without markers.
     """
     joints = joint_rows(solution)
     scene = scene_from_solution(solution)
@@ -66,6 +69,7 @@ def report_html(solution: Solution, title: str = "") -> str:
         bodies=bodies_section(solution),
         moments=moments,
         moments_more=more,
+        extra=extra,
         clinical=clinical_section(solution),
         stride=scene["stride"],
         shown_rate=f"{scene['rate']:g}",
