@@ -46,9 +46,13 @@ CASES = (
     Case("turn, three cameras", "turn", n_cameras=3, other=True),
     Case("whole body", "body", other=True),
     Case("arms, perfect masks", "arms", masks=True, rms=0.7, joints=3),
-    Case("arms in clutter", "arms", "clutter", other=True, seeds=(1, 2, 3, 4, 5), rms=4.0),
-    Case("arms in clutter, plain level set", "arms", "clutter", "level-set", other=True),
-    Case("arms in clutter, coupled", "arms", "clutter", "coupled", other=True),
+    Case(
+        "arms in clutter", "arms", "clutter", other=True, given=True, seeds=(1, 2, 3, 4, 5), rms=4.0
+    ),
+    Case(
+        "arms in clutter, plain level set", "arms", "clutter", "level-set", other=True, given=True
+    ),
+    Case("arms in clutter, coupled", "arms", "clutter", "coupled", other=True, given=True),
     Case("arms, level set", "arms", method="level-set"),
 )
 
