@@ -96,7 +96,7 @@ def test_the_order_of_cameras_is_nothing(upper, ring):
 
 
 def test_a_turned_scene_gives_the_turned_pose(upper, ring):
-    cameras = ring(3, target=(0, 1.2, 0))
+    cameras = ring(4, target=(0, 1.2, 0))
     truth = a_pose(upper, 1)
     start, masks = off(upper, truth, 1, angle=0.015, shift=0.008), masks_of(upper, truth, cameras)
     turn, shift = Rotation.from_rotvec([0.3, -1.1, 0.4]).as_matrix(), np.array([3.0, -1, 2])
