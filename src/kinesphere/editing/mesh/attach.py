@@ -8,8 +8,9 @@ from kinesphere.data import Array, Motion, Step, Surface, bundled_body, settings
 from kinesphere.editing.mesh.girths import fit_girths
 from kinesphere.editing.mesh.merging import on_limbs_of
 from kinesphere.editing.mesh.proportions import begins_of, fit_limbs
+from kinesphere.editing.mesh.rigging import rigged
 from kinesphere.editing.mesh.settings import SurfaceSettings
-from kinesphere.editing.mesh.shape import fit_shape
+from kinesphere.editing.mesh.shape import as_large_as, fit_shape
 from kinesphere.editing.mesh.standing import ups_while_standing
 from kinesphere.editing.mesh.untangle import inverted_faces, softened, untangled
 
@@ -31,19 +32,23 @@ def attach_surface(
     motion
         Normalized; its standing feet tell how shoes lie in their frames.
     body
-        In any pose near standing, arms to the sides; the bundled one by default.
+        The bundled one by default; or any that stands, arms anywhere between out and hanging. One
+        without limbs of its own, as a file without joints gives it, gets them first (`rigged`).
     settings
 
     Raises
     ------
     BadSurface
-        If the skeleton's limbs are not known by name.
+        If the skeleton's limbs are not known by name, or the mesh is no person.
     """
     settings = settings or SurfaceSettings()
     skeleton = motion.skeleton
-    body = on_limbs_of(bundled_body() if body is None else body, skeleton)
+    body = bundled_body() if body is None else body
+    if not body.has_limbs:
+        body = rigged(body, settings)
+    body = on_limbs_of(body, skeleton)
     steps = fit_shape(body, begins_of(skeleton))
-    body = body.shaped(steps)
+    body = body.shaped(steps) if steps else as_large_as(body, begins_of(skeleton))
     maps = fit_limbs(body, skeleton, ups_while_standing(motion))
     if settings.fit_girths:
         maps = fit_girths(body, skeleton, maps, settings.marker_height / 1e3)

@@ -1,0 +1,3 @@
+"""A mesh that somebody brings becomes a body with limbs, joints and weights."""
+
+from kinesphere.editing.mesh.rigging.rig import rigged as rigged
