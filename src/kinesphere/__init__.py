@@ -36,9 +36,12 @@ if TYPE_CHECKING:
     from kinesphere.editing import skin as skin
     from kinesphere.errors import KinesphereError as KinesphereError
     from kinesphere.io import read as read
+    from kinesphere.io import read_rig as read_rig
     from kinesphere.io import write as write
+    from kinesphere.io import write_on_rig as write_on_rig
     from kinesphere.labelling import label as label
     from kinesphere.pipeline import Settings as Settings
+    from kinesphere.pipeline import retarget as retarget
     from kinesphere.pipeline import solve as solve
     from kinesphere.report import report_html as report_html
 
@@ -57,9 +60,9 @@ _ROOMS = {
     "data.isb": "IsbAngles isb_angles",
     "editing": "apply_edits attach_surface skin",
     "errors": "KinesphereError",
-    "io": "read write",
+    "io": "read read_rig write write_on_rig",
     "labelling": "label",
-    "pipeline": "Settings solve",
+    "pipeline": "Settings retarget solve",
     "report": "report_html",
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names.split()}

@@ -11,6 +11,7 @@ from kinesphere.cli.edit import edit
 from kinesphere.cli.info import info
 from kinesphere.cli.label import label
 from kinesphere.cli.learn import model
+from kinesphere.cli.retarget import retarget
 from kinesphere.cli.settings import settings
 from kinesphere.cli.solve import solve
 
@@ -51,5 +52,5 @@ def kinesphere(
         typer.echo(context.get_help())
 
 
-for command in (demo, info, label, solve, edit, compare, convert, model, settings):
+for command in (demo, info, label, solve, edit, retarget, compare, convert, model, settings):
     app.command()(command)

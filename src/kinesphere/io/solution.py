@@ -1,7 +1,7 @@
 """A solved folder: everything one run found out, in the files that others use."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +11,11 @@ from kinesphere.data.isb import isb_angles
 from kinesphere.errors import BadSetting, UnreadableFile
 from kinesphere.io.atomic import check_directory_place, replacing_directory
 from kinesphere.io.bvh import write_bvh
+from kinesphere.io.bvh_settings import BvhSettings
 from kinesphere.io.c3d import read_c3d, write_c3d
 from kinesphere.io.gltf import write_solution_gltf
 from kinesphere.io.isb_csv import write_isb_angles
+from kinesphere.io.joint_points import with_joints, without_notes
 from kinesphere.io.opensim import write_osim
 from kinesphere.io.opensim_joints import opensim_name
 from kinesphere.io.opensim_motion import write_mot
@@ -51,6 +53,7 @@ def write_solution(
     solution: Solution,
     directory: str | Path,
     extra: Mapping[str, str | bytes] | None = None,
+    bvh: BvhSettings | None = None,
 ) -> None:
     """Write a solved folder; it appears whole or not at all.
 
@@ -60,6 +63,8 @@ def write_solution(
         A new or empty folder, or a solved one, which is replaced.
     extra
         Further files: name → text or bytes (``{"report.html": page}``).
+    bvh
+        What ``motion.bvh`` is like.
 
     Raises
     ------
@@ -74,12 +79,12 @@ def write_solution(
     details = {k: None if k == _C3D else v for k, v in recording.details.items()}
     bare = replace(solution, recording=replace(recording, details=details))
     with replacing_directory(directory, _only(extra)) as folder:
-        write_c3d(_with_joint_centres(solution), folder / RECORDING)
+        write_c3d(with_joints(solution), folder / RECORDING)
         write_skeleton(skeleton, folder / "skeleton.json")
         write_parameters(solution.parameters, folder / "parameters.csv")
         if (clinical := isb_angles(solution.motion, skeleton)).joints:
             write_isb_angles(clinical, folder / ISB_ANGLES)
-        write_bvh(solution.motion, folder / "motion.bvh")
+        write_bvh(solution.motion, folder / "motion.bvh", **asdict(bvh or BvhSettings()))
         write_solution_gltf(solution, folder / MOTION_GLB)
         write_trc(_model_markers(solution), folder / "motion.trc")
         write_mot(solution.parameters, folder / "motion.mot")
@@ -132,31 +137,9 @@ def read_solution(directory: str | Path) -> Solution:
     recording = solution.recording
     if _C3D not in recording.details:
         return solution
-    details = {**recording.details, _C3D: read_c3d(directory / RECORDING).details[_C3D]}
+    source = read_c3d(directory / RECORDING).details[_C3D]
+    details = {**recording.details, _C3D: without_notes(source)}
     return replace(solution, recording=replace(recording, details=details))
-
-
-def _with_joint_centres(solution: Solution) -> Recording:
-    """Return the recording with the joint centres of the motion among its points."""
-    recording = solution.recording
-    names = tuple(
-        name if name not in recording.labels else f"{name}_centre"
-        for name in solution.skeleton.joint_names
-    )
-    centres = solution.motion.joint_centres()
-    residuals = recording.residuals
-    if residuals is not None:
-        residuals = np.hstack([residuals, np.full(centres.shape[:2], np.nan)])
-    sure = recording.confidence
-    if sure is not None:
-        sure = np.concatenate([sure, np.full(len(names), np.nan)])
-    return replace(
-        recording,
-        markers=np.hstack([recording.markers, centres]),
-        labels=recording.labels + names,
-        residuals=residuals,
-        confidence=sure,
-    )
 
 
 def _model_markers(solution: Solution) -> Recording:

@@ -7,6 +7,7 @@ import numpy as np
 
 from kinesphere import __version__
 from kinesphere.data import Solution
+from kinesphere.data.conventions import CONVENTIONS
 from kinesphere.data.isb import GIMBAL_MARGIN_DEG, isb_angles
 from kinesphere.io.json_files import write_json
 
@@ -19,6 +20,7 @@ def summary_of(solution: Solution) -> dict[str, Any]:
     return {
         "format": SUMMARY_FORMAT,
         "version": __version__,
+        "conventions": CONVENTIONS,
         "model": solution.model_name,
         "n_frames": motion.n_frames,
         "rate_hz": motion.rate,
