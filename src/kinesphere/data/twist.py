@@ -44,7 +44,7 @@ class TwistJoints:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What each is called: ``left_forearm_twist_1``…"""
+        """What each is called: ``left_forearm_twist_1`` and so on."""
         return tuple(
             f"{self.surface.limbs[limb]}_twist_{k % STEPS + 1}" for k, limb in enumerate(self.limbs)
         )
@@ -149,4 +149,3 @@ def _spreadable_twist(relative: Array, axis: Array, middle: Array) -> Array:
     off = np.arccos(np.clip(points @ middle, -1.0, 1.0))
     told = np.clip((_LOST[1] - off) / (_LOST[1] - _LOST[0]), 0.0, 1.0)
     return np.asarray(angle * told)
-

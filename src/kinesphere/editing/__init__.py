@@ -3,6 +3,7 @@
 from kinesphere.editing.apply import apply_edits as apply_edits
 from kinesphere.editing.mesh import SurfaceSettings as SurfaceSettings
 from kinesphere.editing.mesh import attach_surface as attach_surface
+from kinesphere.editing.mesh import prepared_surface as prepared_surface
 from kinesphere.editing.mesh import skin as skin
 from kinesphere.editing.retarget import retarget_motion as retarget_motion
 from kinesphere.editing.retarget_settings import RetargetSettings as RetargetSettings

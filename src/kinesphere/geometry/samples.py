@@ -40,4 +40,5 @@ def vertex_areas(vertices: Array, faces: NDArray[np.intp]) -> Array:
     """Return how much of the surface belongs to each vertex, (n_vertices,)."""
     a, b, c = vertices[faces.T]
     third = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6
-    return np.bincount(faces.ravel(), np.repeat(third, 3), minlength=len(vertices))
+    areas = np.bincount(faces.ravel(), np.repeat(third, 3), minlength=len(vertices))
+    return np.asarray(areas, dtype=np.float64)

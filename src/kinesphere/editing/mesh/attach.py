@@ -8,7 +8,7 @@ from kinesphere.data import Array, Motion, Step, Surface, bundled_body, settings
 from kinesphere.editing.mesh.girths import fit_girths
 from kinesphere.editing.mesh.merging import on_limbs_of
 from kinesphere.editing.mesh.proportions import begins_of, fit_limbs
-from kinesphere.editing.mesh.rigging import rigged
+from kinesphere.editing.mesh.rigging import rigged, righted
 from kinesphere.editing.mesh.settings import SurfaceSettings
 from kinesphere.editing.mesh.shape import as_large_as, fit_shape
 from kinesphere.editing.mesh.standing import ups_while_standing
@@ -32,8 +32,8 @@ def attach_surface(
     motion
         Normalized; its standing feet tell how shoes lie in their frames.
     body
-        The bundled one by default; or any that stands, arms anywhere between out and hanging. One
-        without limbs of its own, as a file without joints gives it, gets them first (`rigged`).
+        The bundled one by default; or any that stands, arms anywhere between out and hanging, as
+        `read` gives it. One without limbs of its own gets them first (`rigged`).
     settings
 
     Raises
@@ -43,9 +43,7 @@ def attach_surface(
     """
     settings = settings or SurfaceSettings()
     skeleton = motion.skeleton
-    body = bundled_body() if body is None else body
-    if not body.has_limbs:
-        body = rigged(body, settings)
+    body = bundled_body() if body is None else prepared_surface(body, settings)
     body = on_limbs_of(body, skeleton)
     steps = fit_shape(body, begins_of(skeleton))
     body = body.shaped(steps) if steps else as_large_as(body, begins_of(skeleton))
@@ -69,6 +67,7 @@ def attach_surface(
                 for name, scale in zip(body.limbs, maps.scales, strict=True)
             },
             "inverted_triangles": int(turned.sum()),
+            "tall_m": round(float(np.ptp(vertices[:, 1])), 3),
         },
     )
     return replace(
@@ -79,6 +78,13 @@ def attach_surface(
         shapes=(),
         history=(*body.history, step),
     )
+
+
+def prepared_surface(body: Surface, settings: SurfaceSettings) -> Surface:
+    """Return a body that stands as ours does, with limbs; as it is where it does already."""
+    if body.shapes or any(step.name == "rigging" for step in body.history):
+        return body
+    return righted(body, settings) if body.has_limbs else rigged(body, settings)
 
 
 def _carried_softly(body: Surface, matrices: Array, shifts: Array, rounds: int) -> Array:

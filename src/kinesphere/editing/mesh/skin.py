@@ -38,8 +38,8 @@ def skin(
         Which; all by default.
     blend
         ``"linear"``, the weighted mean of the limbs; ``"dual-quaternion"``, which keeps the volume
-        of what twists; ``"twist-joints"``, linear with twist spread along the limbs, as ``motion.glb``
-        has it.
+        of what twists; ``"twist-joints"``, linear with twist spread along the limbs, as
+        ``motion.glb`` has it.
 
     Returns
     -------

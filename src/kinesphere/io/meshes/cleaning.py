@@ -1,4 +1,4 @@
-"""Triangles as files hold them become one surface: merged, without what has no area, outside out."""
+"""Triangles as files hold them become one surface: merged, nothing flat, outside out."""
 
 import numpy as np
 from numpy.typing import NDArray

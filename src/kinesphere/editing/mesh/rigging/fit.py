@@ -95,7 +95,7 @@ def apart(puppet: Puppet, target: Target, vector: Array) -> tuple[Array, Array]:
     features = _with_normals(placed, normals)
     there, _ = target.tree.query(features)  # type: ignore[attr-defined]
     back, _ = KDTree(features).query(_with_normals(target.points, target.normals))
-    return there, back
+    return np.asarray(there), np.asarray(back)
 
 
 def _with_normals(points: Array, normals: Array) -> Array:

@@ -118,15 +118,13 @@ class Puppet:
             else:
                 world[:, limb] = world[:, parent] @ turns[:, limb]
                 way = centres[:, limb] - centres[:, parent]
-                places[:, limb] = (
-                    places[:, parent] + (matrices[:, parent] @ way[..., None])[..., 0]
-                )
+                places[:, limb] = places[:, parent] + (matrices[:, parent] @ way[..., None])[..., 0]
             matrices[:, limb] = world[:, limb] @ (size[:, 0] * scale[:, limb])
         return matrices, places - (matrices @ centres[..., None])[..., 0], places
 
     def vertices(self, vector: Array, chosen: NDArray[np.intp] | slice = slice(None)) -> Array:
         """Return where (some of) the vertices are, (n_vertices, 3) m."""
-        return self._placed(vector[None], vector[self.parts["shapes"]], chosen)[0]
+        return np.asarray(self._placed(vector[None], vector[self.parts["shapes"]], chosen)[0])
 
     def slopes(self, vector: Array, chosen: NDArray[np.intp] | slice, step: float = 1e-5) -> Array:
         """Return how vertices move with each number, (n_numbers, n_vertices, 3), by differences."""
@@ -138,11 +136,12 @@ class Puppet:
         found[:first] = self._placed(moved[:first], vector[self.parts["shapes"]], chosen)
         for k in range(first, n):
             found[k] = self.vertices(moved[k], chosen)
-        return (found - base) / step
+        return np.asarray((found - base) / step)
 
     def _placed(self, vectors: Array, steps: Array, chosen: NDArray[np.intp] | slice) -> Array:
         body = self.body
         shaped = body.vertices[chosen] + np.tensordot(steps, body.shape_vertices[:, chosen], 1)
         matrices, shifts, _ = self.maps(vectors)
         shares = body.weight_limbs[chosen], body.weight_shares[chosen]
-        return linear_blend(shaped, *shares, matrices, shifts)
+        moved: Array = linear_blend(shaped, *shares, matrices, shifts)
+        return moved

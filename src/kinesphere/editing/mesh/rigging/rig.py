@@ -9,6 +9,7 @@ from kinesphere.data import Array, Step, Surface, bundled_body
 from kinesphere.editing.mesh.rigging.puppet import Puppet
 from kinesphere.editing.mesh.rigging.starts import ARMS, Fit, fit_from
 from kinesphere.editing.mesh.rigging.transfer import at_most_four, transferred
+from kinesphere.editing.mesh.rigging.units import unit_of
 from kinesphere.editing.mesh.rigging.upright import name_of_axis, ways_to_stand
 from kinesphere.editing.mesh.settings import SurfaceSettings
 from kinesphere.errors import BadSurface
@@ -20,8 +21,6 @@ _COVERED = 0.8
 """Share of either surface that must lie near the other. People: over 0.99; a capsule: 0.69."""
 _PLAIN = 1.15  # how much worse every other way to stand must fit; people: 2 and more
 _SMOOTHING = 2  # rounds
-_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "dm": 0.1}
-_SHORT, _TALL = 1.2, 2.3  # m: what stands between is a person in that unit
 
 
 def rigged(mesh: Surface, settings: SurfaceSettings | None = None) -> Surface:
@@ -68,9 +67,7 @@ def rigged(mesh: Surface, settings: SurfaceSettings | None = None) -> Surface:
     return _carried_over(mesh, puppet, fit, off)
 
 
-def _covered(
-    puppet: Puppet, fit: Fit, points: Array, normals: Array
-) -> tuple[float, float, float]:
+def _covered(puppet: Puppet, fit: Fit, points: Array, normals: Array) -> tuple[float, float, float]:
     """Return which share of the mesh is near the body, of the body near the mesh, and how near.
 
     The last is the median distance across the surface, m.
@@ -89,13 +86,11 @@ def _carried_over(mesh: Surface, puppet: Puppet, fit: Fit, off: float) -> Surfac
     vertices = mesh.vertices @ fit.body_from_mesh.T * fit.scale
     placed = puppet.vertices(fit.vector)
     given = replace(mesh, vertices=vertices)
-    weights = transferred(
-        vertices, given.normals(), placed, body.normals(placed), body.weights
-    )
+    weights = transferred(vertices, given.normals(), placed, body.normals(placed), body.weights)
     matrices, shifts, centres = puppet.maps(fit.vector[None])
     shaped = body.shaped(dict(zip(body.shapes, fit.vector[puppet.parts["shapes"]], strict=True)))
     ends = (matrices[0] @ shaped.ends[:, :, None])[..., 0] + shifts[0]
-    unit, metres = _unit(float(np.ptp(vertices[:, 1])) / fit.scale)
+    unit, metres = unit_of(float(np.ptp(vertices[:, 1])) / fit.scale)
     ground = np.array([0.0, vertices[:, 1].min(), 0.0])
     size = metres / fit.scale
     step = Step(
@@ -120,12 +115,3 @@ def _carried_over(mesh: Surface, puppet: Puppet, fit: Fit, off: float) -> Surfac
         weights=at_most_four(weights, mesh.faces, _SMOOTHING),
         history=(*mesh.history, step),
     )
-
-
-def _unit(tall: float) -> tuple[str, float]:
-    """Return the unit in which so tall a body is a person, and its m; a guess, for people."""
-    for name, metres in _UNITS.items():
-        if _SHORT <= tall * metres <= _TALL:
-            return name, metres
-    metres = 1.7 / tall
-    return f"{metres:.3g} m, as tall as a person", metres

@@ -57,8 +57,8 @@ def fit_from(
                 free[puppet.parts[part]] = True
             vector = fit_puppet(puppet, target, start, free, _COARSE, _EVERY)
             tried.append((number, Fit(way, scale, pose, vector, _error(puppet, target, vector))))
-    way, best = min(tried, key=lambda one: one[1].error)
-    others = [fit.error for number, fit in tried if number != way]
+    chosen, best = min(tried, key=lambda one: one[1].error)
+    others = [fit.error for number, fit in tried if number != chosen]
     target = Target(points @ best.body_from_mesh.T * best.scale, normals @ best.body_from_mesh.T)
     vector = fit_puppet(puppet, target, best.vector, np.ones(len(best.vector), dtype=bool), _FINE)
     finished = best._replace(vector=vector, error=_error(puppet, target, vector))

@@ -35,7 +35,7 @@ def transferred(
     turn = _TURN / np.sqrt(2)
     tree = KDTree(np.hstack([source, turn * source_normals]))
     apart, near = tree.query(np.hstack([points, turn * normals]), k=_NEAR)
-    share = 1 / (apart + _TOUCH) ** 2
+    share = 1 / (np.asarray(apart) + _TOUCH) ** 2
     share /= share.sum(axis=1, keepdims=True)
     return np.asarray(np.einsum("vk,vkl->vl", share, weights[near]))
 

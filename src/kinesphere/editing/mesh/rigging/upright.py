@@ -31,16 +31,14 @@ def ways_to_stand(points: Array, normals: Array, up: str, facing: str) -> list[A
     BadSurface
         If both are stated along one line.
     """
+    if (said := ways_as_said(up, facing)) is not None:
+        return [said]
     said_up, said_front = axis_named(up), axis_named(facing)
-    if said_up is not None and said_front is not None:
-        if abs(said_up @ said_front) > 0.5:
-            raise BadSurface(f"surface.up is {up} and surface.facing {facing}: they must be square")
-        return [_axes(said_front, said_up)]
     across = _mirror_normal(points, normals)
     off = points - points.mean(axis=0)
     off = off - np.outer(off @ across, across)
     tall = np.linalg.eigh(off.T @ off)[1][:, -1]
-    across, tall = _snapped(across, tall)
+    across, tall = snapped(across, tall)
     found = []
     for sign in (1.0, -1.0):
         for side in (1.0, -1.0):
@@ -53,22 +51,32 @@ def ways_to_stand(points: Array, normals: Array, up: str, facing: str) -> list[A
             if (said_up is None or said_up @ way > 0) and (
                 said_front is None or said_front @ front > 0
             ):
-                found.append(_axes(front, way))
+                found.append(body_axes(front, way))
     if found:
         return found
     stated = said_up if said_up is not None else said_front
     assert stated is not None
     others = [s * np.roll(np.abs(stated), k) for k in (1, 2) for s in (1.0, -1.0)]
     if said_up is not None:
-        return [_axes(other, said_up) for other in others]
-    return [_axes(stated, other) for other in others]
+        return [body_axes(other, said_up) for other in others]
+    return [body_axes(stated, other) for other in others]
+
+
+def ways_as_said(up: str, facing: str) -> Array | None:
+    """Return ``body_from_mesh`` where both axes are stated; None where one is not."""
+    tall, front = axis_named(up), axis_named(facing)
+    if tall is None or front is None:
+        return None
+    if abs(tall @ front) > 0.5:
+        raise BadSurface(f"surface.up is {up} and surface.facing {facing}: they must be square")
+    return body_axes(front, tall)
 
 
 def axis_named(name: str) -> Array | None:
     """Return the axis that ``"+y"`` names, None for ``"auto"``."""
     if name == "auto":
         return None
-    return np.eye(3)["xyz".index(name[1])] * (-1.0 if name[0] == "-" else 1.0)
+    return np.asarray(np.eye(3)["xyz".index(name[1])] * (-1.0 if name[0] == "-" else 1.0))
 
 
 def name_of_axis(direction: Array) -> str:
@@ -79,7 +87,7 @@ def name_of_axis(direction: Array) -> str:
     return name if off < 1.0 else f"{off:.0f}° off {name}"
 
 
-def _axes(front: Array, up: Array) -> Array:
+def body_axes(front: Array, up: Array) -> Array:
     """Return rows x (front), y (up), z (right)."""
     return np.stack([front, up, np.cross(front, up)])
 
@@ -105,10 +113,11 @@ def _mirror_normal(points: Array, normals: Array) -> Array:
             middle = (points[close] + twin[close]).mean(axis=0) / 2
             both = (points[close] - middle).T @ (twin[close] - middle)
             normal = np.linalg.eigh(both + both.T)[1][:, 0]
-    return best
+    return np.asarray(best)
 
 
-def _snapped(across: Array, tall: Array) -> tuple[Array, Array]:
+def snapped(across: Array, tall: Array) -> tuple[Array, Array]:
+    """Return both directions along axes of the file, where they nearly are."""
     a, t = int(np.abs(across).argmax()), int(np.abs(tall).argmax())
     if a == t or abs(across[a]) < _SNAP or abs(tall[t]) < _SNAP:
         if abs(tall[t]) >= _SNAP:  # turned about the vertical alone
