@@ -95,7 +95,8 @@ def test_nothing_leaps(joints):
         for path in paths:
             turns = joints.turns(posed(joints.surface, limb, path))
             change = np.swapaxes(turns[1:], -1, -2) @ turns[:-1]
-            leap = np.degrees(np.arccos(np.clip((np.trace(change, axis1=2, axis2=3) - 1) / 2, -1, 1)))
+            cosine = (np.trace(change, axis1=2, axis2=3) - 1) / 2
+            leap = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
             assert leap.max() < 12 * step
 
 

@@ -31,8 +31,8 @@ _CONVENTIONS = {
     "node": "named after its limb, turned as its limb, at the joint towards its parent; where a "
     "joint was measured to come apart its node follows the child",
     "gaps": "an unseen limb keeps its last place in its parent; an unseen marker has scale zero",
-    "skinning": "linear blend; nodes LIMB_twist_1 to _4 hang from upper arms, forearms and thighs and "
-    "turn back about the long axis: skin along the limb takes 0, 1/4, 1/2, 3/4 of its twist",
+    "skinning": "linear blend; nodes LIMB_twist_1 to _4 of upper arms, forearms and thighs turn "
+    "back about the long axis: skin along the limb takes 0, 1/4, 1/2, 3/4 of its twist",
 }
 
 

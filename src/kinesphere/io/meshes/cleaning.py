@@ -45,17 +45,21 @@ def cleaned(
     wrong = used[~np.isfinite(vertices[used]).all(axis=1)]
     if len(wrong):
         raise BadSurface(f"{what}: vertex {wrong[0]} is {vertices[wrong[0]]}, no place")
+    kept = used
     size = float(np.ptp(vertices[used], axis=0).max()) if len(used) else 0.0
     if size > 0:
         corner = vertices[used].min(axis=0)
         cells = np.rint((vertices[used] - corner) / (_SAME * size)).astype(np.int64)
         _, first, merged = np.unique(cells, axis=0, return_index=True, return_inverse=True)
+        rank = np.argsort(np.argsort(first))  # in the order of the file
         to = np.zeros(len(vertices), dtype=np.intp)
-        to[used] = merged.ravel()
-        faces, kept = to[faces], used[first]
+        to[used] = rank[merged.ravel()]
+        faces, kept = to[faces], used[np.sort(first)]
         a, b, c = vertices[kept][faces.T]
         area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
         faces = faces[area > (_SAME * size) ** 2]
+    else:
+        faces = faces[:0]
     if len(faces) < _FEWEST:
         raise BadSurface(
             f"{what} has {len(faces)} triangles with an area; a body needs {_FEWEST} and more"

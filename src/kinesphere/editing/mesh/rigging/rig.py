@@ -7,7 +7,7 @@ from scipy.spatial import KDTree
 
 from kinesphere.data import Array, Step, Surface, bundled_body
 from kinesphere.editing.mesh.rigging.puppet import Puppet
-from kinesphere.editing.mesh.rigging.starts import ARMS, Fit, fit_from
+from kinesphere.editing.mesh.rigging.starts import ARMS, Fit, fit_from, pose_of
 from kinesphere.editing.mesh.rigging.transfer import at_most_four, transferred
 from kinesphere.editing.mesh.rigging.units import unit_of
 from kinesphere.editing.mesh.rigging.upright import name_of_axis, ways_to_stand
@@ -100,7 +100,7 @@ def _carried_over(mesh: Surface, puppet: Puppet, fit: Fit, off: float) -> Surfac
             "up": name_of_axis(fit.body_from_mesh[1]),
             "facing": name_of_axis(fit.body_from_mesh[0]),
             "unit": unit,
-            "pose": fit.pose,
+            "pose": pose_of(body.limbs, ends - centres[0], np.array([0.0, 1.0, 0.0])),
             "weights": "found",
             "off_mm": round(1e3 * off * size, 1),
         },

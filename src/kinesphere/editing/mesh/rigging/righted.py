@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinesphere.data import Array, Step, Surface
-from kinesphere.editing.mesh.rigging.starts import ARMS
+from kinesphere.editing.mesh.rigging.starts import pose_of
 from kinesphere.editing.mesh.rigging.units import unit_of
 from kinesphere.editing.mesh.rigging.upright import body_axes, name_of_axis, snapped, ways_as_said
 from kinesphere.editing.mesh.settings import SurfaceSettings
@@ -34,7 +34,7 @@ def righted(body: Surface, settings: SurfaceSettings | None = None) -> Surface:
         "up": name_of_axis(way[1]),
         "facing": name_of_axis(way[0]),
         "unit": unit,
-        "pose": _pose(body, way[1]),
+        "pose": pose_of(body.limbs, body.ends - body.joint_centres, way[1]),
         "weights": f"its own, joints told by {read.get('limbs_from', 'their names')}",
     }
     return replace(
@@ -62,12 +62,3 @@ def _way_of_joints(body: Surface) -> Array:
         raise BadSurface("hips and shoulders of the mesh lie on one point")
     right, tall = snapped(across / sizes[1], up / sizes[0])
     return body_axes(np.cross(tall, right), tall)
-
-
-def _pose(body: Surface, up: Array) -> str:
-    """Return which of ``ARMS`` the upper arms are nearest to."""
-    limbs = [body.limbs.index(f"{side}_upper_arm") for side in ("left", "right")]
-    along = (body.ends - body.joint_centres)[limbs]
-    sine = -(along @ up) / np.maximum(np.linalg.norm(along, axis=1), 1e-15)
-    below = float(np.degrees(np.arcsin(np.clip(sine, -1, 1))).mean())
-    return min(ARMS, key=lambda name: abs(ARMS[name] - below))

@@ -11,8 +11,12 @@ from kinesphere.editing.mesh.rigging.puppet import Puppet
 ARMS = {"T": 0.0, "A": 40.0, "standing": 75.0}
 """Degrees that the upper arms hang below the horizontal."""
 _COARSE = (0.3, 0.3, 0.2, 0.2, 0.15, 0.15, 0.1, 0.1)  # m
-_FINE = (0.1, 0.1, 0.08, 0.08, 0.06, 0.06, 0.05, 0.05, *(0.04,) * 6, *(0.03,) * 6)
-_EVERY = 4
+_FINER = (0.1, 0.1, 0.08, 0.08, 0.06, 0.06, 0.05, 0.05, *(0.04,) * 4)
+_FINEST = (*(0.04,) * 2, *(0.03,) * 5)
+_EVERY, _EVERY_FINER = 4, 2
+_HOPELESS = 0.06
+"""m, beyond which a coarse fit is no person and not worth a finer one; people: 0.02, a capsule:
+0.08."""
 
 
 class Fit(NamedTuple):
@@ -33,7 +37,7 @@ class Fit(NamedTuple):
 def fit_from(
     puppet: Puppet, points: Array, normals: Array, ways: list[Array], poses: tuple[str, ...]
 ) -> tuple[Fit, float]:
-    """Return the best fit of all starts, and the error of the best that stands another way.
+    """Return the best fit of all starts, and how many times worse the best of another way is.
 
     Parameters
     ----------
@@ -59,10 +63,29 @@ def fit_from(
             tried.append((number, Fit(way, scale, pose, vector, _error(puppet, target, vector))))
     chosen, best = min(tried, key=lambda one: one[1].error)
     others = [fit.error for number, fit in tried if number != chosen]
+    if best.error > _HOPELESS:
+        return best, np.inf
     target = Target(points @ best.body_from_mesh.T * best.scale, normals @ best.body_from_mesh.T)
-    vector = fit_puppet(puppet, target, best.vector, np.ones(len(best.vector), dtype=bool), _FINE)
+    free = np.ones(len(best.vector), dtype=bool)
+    vector = fit_puppet(puppet, target, best.vector, free, _FINER, _EVERY_FINER)
+    vector = fit_puppet(puppet, target, vector, free, _FINEST)
     finished = best._replace(vector=vector, error=_error(puppet, target, vector))
     return finished, min(others, default=np.inf) / best.error
+
+
+def pose_of(limbs: tuple[str, ...], along: Array, up: Array) -> str:
+    """Return which of ``ARMS`` the upper arms are nearest to.
+
+    Parameters
+    ----------
+    along : (n_limbs, 3)
+        From the beginning of each limb to its end.
+    up : (3,)
+    """
+    at = [limbs.index(f"{side}_upper_arm") for side in ("left", "right")]
+    sine = -(along[at] @ up) / np.maximum(np.linalg.norm(along[at], axis=1), 1e-15)
+    below = float(np.degrees(np.arcsin(np.clip(sine, -1, 1))).mean())
+    return min(ARMS, key=lambda name: abs(ARMS[name] - below))
 
 
 def _error(puppet: Puppet, target: Target, vector: Array) -> float:

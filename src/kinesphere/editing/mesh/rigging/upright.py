@@ -121,8 +121,8 @@ def snapped(across: Array, tall: Array) -> tuple[Array, Array]:
     a, t = int(np.abs(across).argmax()), int(np.abs(tall).argmax())
     if a == t or abs(across[a]) < _SNAP or abs(tall[t]) < _SNAP:
         if abs(tall[t]) >= _SNAP:  # turned about the vertical alone
-            tall = np.eye(3)[t]
+            tall = np.sign(tall[t]) * np.eye(3)[t]
             across = across - (across @ tall) * tall
             across = across / np.linalg.norm(across)
         return across, tall
-    return np.eye(3)[a], np.eye(3)[t]
+    return np.sign(across[a]) * np.eye(3)[a], np.sign(tall[t]) * np.eye(3)[t]
