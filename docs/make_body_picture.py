@@ -1,4 +1,4 @@
-"""``python -m docs.make_body_picture``: the bundled body on a solved recording, as three.js shows it.
+"""``python -m docs.make_body_picture``: the body on a solved recording, as three.js shows it.
 
 Needs a recording that does not ship with the project (``KINESPHERE_DATA``), Chromium, and npm,
 which fetches three.js once.
@@ -41,7 +41,7 @@ _PAGE = """<!doctype html><style>body { margin: 0; }</style>
 import * as THREE from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
-const { poses, width, height, apart, columns, markers } = %s;
+const { poses, width, height, apart } = %s;
 const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
 renderer.setPixelRatio(2);
 renderer.setSize(width, height);
@@ -50,8 +50,7 @@ document.body.append(renderer.domElement);
 const scene = new THREE.Scene();
 scene.background = new THREE.Color(0xf5f6f8);
 scene.add(new THREE.HemisphereLight(0xffffff, 0x9aa3b5, 1.6));
-const rows = Math.ceil(poses.length / columns), deep = 2.4;
-const wide = Math.max(columns * apart, rows * deep) + 2;
+const wide = poses.length * apart;
 const sun = new THREE.DirectionalLight(0xffffff, 2.2);
 sun.position.set(-2, 6, 4);
 sun.castShadow = true;
@@ -59,7 +58,8 @@ Object.assign(sun.shadow.camera, { left: -wide, right: wide, top: wide, bottom: 
 sun.shadow.mapSize.set(2048, 2048);
 sun.shadow.normalBias = 0.02;
 scene.add(sun);
-const ground = new THREE.Mesh(new THREE.PlaneGeometry(60, 60), new THREE.ShadowMaterial({ opacity: 0.22 }));
+const shade = new THREE.ShadowMaterial({ opacity: 0.22 });
+const ground = new THREE.Mesh(new THREE.PlaneGeometry(60, 60), shade);
 ground.rotation.x = -Math.PI / 2;
 ground.receiveShadow = true;
 scene.add(ground);
@@ -72,8 +72,6 @@ for (const [k, { file, time, turn }] of poses.entries()) {
   const body = shown.getObjectByName("body");
   body.castShadow = body.receiveShadow = true;
   body.frustumCulled = false;
-  const group = shown.getObjectByName("markers");
-  if (group) group.visible = markers;
   const root = new THREE.Vector3().setFromMatrixPosition(body.skeleton.bones[0].matrixWorld);
   const front = new THREE.Vector3(1, 0, 0).transformDirection(body.skeleton.bones[0].matrixWorld);
   const holder = new THREE.Group(), turned = new THREE.Group();
@@ -81,27 +79,18 @@ for (const [k, { file, time, turn }] of poses.entries()) {
   turned.rotation.y = turn - Math.atan2(-front.z, front.x) - Math.PI / 2;
   turned.add(shown);
   holder.add(turned);
-  holder.position.set(((k %% columns) - (columns - 1) / 2) * apart, 0, (Math.floor(k / columns) - (rows - 1) / 2) * deep);
+  holder.position.set((k - (poses.length - 1) / 2) * apart, 0, 0);
   scene.add(holder);
 }
 const camera = new THREE.PerspectiveCamera(22, width / height, 0.1, 200);
-const back = rows > 1 ? 4.4 * rows + 3.2 * columns * apart * 0.55 : 5.6;
-camera.position.set(0, rows > 1 ? back * 0.45 : 1.35, back);
-camera.lookAt(0, rows > 1 ? 0.4 : 0.88, 0);
+camera.position.set(0, 1.35, 5.6);
+camera.lookAt(0, 0.88, 0);
 renderer.render(scene, camera);
 window.ready = true;
 </script>"""
 
 
-def photograph(
-    folder: Path,
-    poses: list[dict[str, object]],
-    picture: Path,
-    chromium: str,
-    columns: int = 0,
-    size: tuple[int, int] = (WIDTH, HEIGHT),
-    markers: bool = False,
-) -> None:
+def photograph(folder: Path, poses: list[dict[str, object]], picture: Path, chromium: str) -> None:
     """Draw poses side by side.
 
     Parameters
@@ -111,14 +100,7 @@ def photograph(
     poses
         ``file``, ``time`` in s and ``turn`` in rad about the vertical, 0 from the front.
     """
-    told = {
-        "poses": poses,
-        "width": size[0],
-        "height": size[1],
-        "apart": APART,
-        "columns": columns or len(poses),
-        "markers": markers,
-    }
+    told = {"poses": poses, "width": WIDTH, "height": HEIGHT, "apart": APART}
     (folder / "index.html").write_text(_PAGE % json.dumps(told), encoding="utf-8")
     handler = partial(_Quiet, directory=str(folder))
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
@@ -126,7 +108,7 @@ def photograph(
         with sync_playwright() as session:
             browser = session.chromium.launch(executable_path=chromium, args=list(_BROWSER))
             page = browser.new_page(
-                viewport={"width": size[0], "height": size[1]}, device_scale_factor=2
+                viewport={"width": WIDTH, "height": HEIGHT}, device_scale_factor=2
             )
             page.goto(f"http://127.0.0.1:{server.server_port}/")
             page.wait_for_function("window.ready", timeout=180_000)
@@ -160,8 +142,7 @@ def main() -> int:
     arguments = parser.parse_args()
     data = Path(os.environ.get("KINESPHERE_DATA", ROOT.parent / "shared" / "data"))
     if not (data / RECORDING).is_file():
-        print(f"no {RECORDING} in {data}; KINESPHERE_DATA names the folder", file=sys.stderr)
-        return 2
+        sys.exit(f"no {RECORDING} in {data}; KINESPHERE_DATA names the folder")
     solution = solve(read(data / RECORDING))
     with tempfile.TemporaryDirectory() as temporary:
         folder = with_three(Path(temporary))

@@ -11,7 +11,7 @@ from kinesphere.editing.mesh.proportions import begins_of, fit_limbs
 from kinesphere.editing.mesh.rigging import rigged, righted
 from kinesphere.editing.mesh.settings import SurfaceSettings
 from kinesphere.editing.mesh.shape import as_large_as, fit_shape
-from kinesphere.editing.mesh.standing import ups_while_standing
+from kinesphere.editing.mesh.standing import ankle_heights, ups_while_standing
 from kinesphere.editing.mesh.untangle import inverted_faces, softened, untangled
 
 _SOFTENING = (16, 64, 256)
@@ -47,7 +47,7 @@ def attach_surface(
     body = on_limbs_of(body, skeleton)
     steps = fit_shape(body, begins_of(skeleton))
     body = body.shaped(steps) if steps else as_large_as(body, begins_of(skeleton))
-    maps = fit_limbs(body, skeleton, ups_while_standing(motion))
+    maps = fit_limbs(body, skeleton, ups_while_standing(motion), ankle_heights(motion))
     if settings.fit_girths:
         maps = fit_girths(body, skeleton, maps, settings.marker_height / 1e3)
     matrices, shifts = maps.matrices()
