@@ -17,7 +17,18 @@ from kinesphere.io import read, write, write_model
 from kinesphere.labelling import built_in_model
 from kinesphere.pipeline import Settings, settings_fields, stage_settings
 
-COMMANDS = ("demo", "info", "label", "solve", "edit", "compare", "convert", "model", "settings")
+COMMANDS = (
+    "demo",
+    "info",
+    "label",
+    "solve",
+    "track",
+    "edit",
+    "compare",
+    "convert",
+    "model",
+    "settings",
+)
 
 
 def ok(called):
@@ -40,7 +51,7 @@ def test_help_lists_what_there_is(call):
     for command in COMMANDS:
         assert command in shown.output
     listed = [line.split()[1] for line in shown.output.splitlines() if line.startswith("│ ")]
-    assert not {"track", "view", "live", "batch"} & {*listed}
+    assert not {"view", "live", "batch"} & {*listed}
 
 
 @pytest.mark.parametrize("command", COMMANDS)

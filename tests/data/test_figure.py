@@ -8,8 +8,8 @@ import pytest
 from kinesphere.data.figure import PARTS, find_figure
 from kinesphere.data.figure_names import Part, part_from_name
 from kinesphere.errors import BadModel
+from kinesphere.io.bones import Bone, skeleton_of_bones
 from kinesphere.io.bvh import BVH_FROM_BODY
-from kinesphere.io.rig_motion import Bone, skeleton_of_bones
 
 NAMES = {
     "thigh, left": "left_thigh mixamorig:LeftUpLeg LeftUpperLeg thigh_l DEF-thigh.L "

@@ -6,8 +6,8 @@ import numpy as np
 
 from kinesphere.data import Array, Skeleton
 from kinesphere.editing import scaled_skeleton
+from kinesphere.io.bones import Bone, skeleton_of_bones
 from kinesphere.io.bvh import BVH_FROM_BODY
-from kinesphere.io.rig_motion import Bone, skeleton_of_bones
 
 OTHER_PROPORTIONS = {
     "thigh": 0.85,

@@ -14,6 +14,7 @@ from kinesphere.cli.learn import model
 from kinesphere.cli.retarget import retarget
 from kinesphere.cli.settings import settings
 from kinesphere.cli.solve import solve
+from kinesphere.cli.track import track
 
 app = typer.Typer(
     name="kinesphere",
@@ -52,5 +53,7 @@ def kinesphere(
         typer.echo(context.get_help())
 
 
-for command in (demo, info, label, solve, edit, retarget, compare, convert, model, settings):
+for command in (
+    demo, info, label, solve, track, edit, retarget, compare, convert, model, settings,
+):  # fmt: skip
     app.command()(command)

@@ -67,6 +67,40 @@ def _orientation(found: dict[str, Any], _: dict[str, Any]) -> str:
     return text + ("; mirrored, turned right" if found.get("mirrored") else "")
 
 
+def _scene(found: dict[str, Any], summary: dict[str, Any]) -> str:
+    cameras = found.get("cameras", [])
+    return (
+        f"{len(cameras)} cameras ({', '.join(map(str, cameras[:4]))}"
+        f"{', …' if len(cameras) > 4 else ''}), {summary['n_frames']:,} frames at "
+        f"{summary['rate_hz']:g} Hz; {found.get('unit')}, up was {found.get('up')}"
+    )
+
+
+def _scene_checks(found: dict[str, Any], _: dict[str, Any]) -> str:
+    if not found.get("checked"):
+        return "nothing to check calibration and offsets with"
+    apart = found.get("disagreement_px")
+    if apart is None or not np.isfinite(apart):
+        return "no silhouettes in two cameras at once"
+    return f"silhouettes of the cameras contradict each other by {number_in_words(apart, 'px')}"
+
+
+def _track(found: dict[str, Any], _: dict[str, Any]) -> str:
+    return f"{found.get('model')} body, {found.get('method')} method, start: {found.get('start')}"
+
+
+def _tracking_result(found: dict[str, Any], _: dict[str, Any]) -> str:
+    overlap = found.get("overlap_mean")
+    lost = {k: n for k, n in found.get("frames_lost_of_limb", {}).items() if n}
+    text = f"{found.get('n_solved')} of {found.get('n_frames')} frames"
+    if overlap is not None:
+        text += f", overlap {overlap:.2f}"
+    if lost:
+        worst = max(lost, key=lambda name: lost[name])
+        return text + f"; {len(lost)} limbs lost at times, most {worst} ({lost[worst]} frames)"
+    return text + "; no limb lost"
+
+
 def _editing(found: dict[str, Any], _: dict[str, Any]) -> str:
     joints = ", ".join(f"{joint} in {n:,} frames" for joint, n in found["frames"].items())
     return f"{len(found['edits'])} edits: {joints}"
@@ -157,4 +191,8 @@ _WORDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], str]] = {
     "parameterization": _parameterization,
     "editing": _editing,
     "surface": _surface,
+    "scene": _scene,
+    "scene checks": _scene_checks,
+    "track": _track,
+    "tracking result": _tracking_result,
 }

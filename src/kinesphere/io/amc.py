@@ -6,7 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array, Motion, Step
 from kinesphere.errors import UnreadableFile
-from kinesphere.io.asf import ROOT, Asf, parse_asf, rotation_in_order
+from kinesphere.io.asf_text import ROOT, Asf, parse_asf, rotation_in_order
 from kinesphere.io.bvh import BVH_FROM_BODY
 from kinesphere.io.rig_motion import motion_of_bones
 from kinesphere.io.text import read_text

@@ -6,9 +6,11 @@ import numpy as np
 
 from kinesphere.data import Array, Motion, Skeleton, Step
 from kinesphere.geometry.rotations import rotation_about
+from kinesphere.io.bones import Bone, skeleton_of_bones, unit_of_figure
 from kinesphere.io.bvh import BVH_FROM_BODY
-from kinesphere.io.bvh_text import BvhNode, BvhText, parse_bvh
-from kinesphere.io.rig_motion import Bone, motion_of_bones, skeleton_of_bones, unit_of_figure
+from kinesphere.io.bvh_hierarchy import BvhNode
+from kinesphere.io.bvh_text import BvhText, parse_bvh
+from kinesphere.io.rig_motion import motion_of_bones
 
 
 def read_bvh(path: str | Path, unit: str | None = None) -> Motion:

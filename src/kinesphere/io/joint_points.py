@@ -69,15 +69,13 @@ def _free(name: str, ending: str, taken: set[str]) -> str:
 
 
 def _angles(solution: Solution, j: int) -> Array:
-    """Return axis 1, axis 2 and twist, or three axes, (n_frames, 3) rad; NaN where unseen."""
+    """Return axis 1, axis 2 and twist, or three axes, (n_frames, 3) rad; with NaN where unseen."""
     parameters = solution.parameters
     n_axes = solution.skeleton.joints[j].n_axes
     angles = np.array(parameters.angles[:, j])
-    unseen = np.isnan(angles[:, :n_axes]).any(axis=1)
     angles[:, n_axes:] = 0.0
     if n_axes < 3:
         angles[:, 2] = np.nan_to_num(parameters.twists[:, j], nan=0.0)
-    angles[unseen] = np.nan
     return angles
 
 

@@ -9,11 +9,12 @@ from kinesphere.data.figure import find_figure, rest_from_body, rest_places
 from kinesphere.errors import BadModel
 from kinesphere.geometry.euler import continuous_angles, euler_angles
 from kinesphere.io.atomic import replacing
+from kinesphere.io.bones import unit_of_figure
 from kinesphere.io.bvh import BVH_FROM_BODY
+from kinesphere.io.bvh_hierarchy import BvhNode
 from kinesphere.io.bvh_motion import bones_of, positions_are_added
-from kinesphere.io.bvh_text import BvhNode, parse_bvh
+from kinesphere.io.bvh_text import parse_bvh
 from kinesphere.io.holding import held
-from kinesphere.io.rig_motion import unit_of_figure
 from kinesphere.io.tables import format_rows
 
 

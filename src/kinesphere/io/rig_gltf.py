@@ -14,10 +14,10 @@ from kinesphere.data import Array, Motion, Skeleton, Step
 from kinesphere.errors import BadModel, UnreadableFile
 from kinesphere.geometry.rotations import nearest_rotation, quaternions_from_rotations
 from kinesphere.io.atomic import replacing
+from kinesphere.io.bones import Bone, skeleton_of_bones
 from kinesphere.io.bvh import BVH_FROM_BODY
-from kinesphere.io.bvh_text import MOST_JOINTS
+from kinesphere.io.bvh_hierarchy import MOST_JOINTS
 from kinesphere.io.gltf_file import external_files, parse_gltf
-from kinesphere.io.rig_motion import Bone, skeleton_of_bones
 
 
 class RigJoints(NamedTuple):

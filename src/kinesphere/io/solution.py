@@ -44,8 +44,10 @@ FILES = (
 """What ``write_solution`` writes by itself."""
 ISB_ANGLES = "isb_angles.csv"
 """Written where joints have names; older folders are whole without it."""
-_BESIDE = (ISB_ANGLES, "report.html", ".DS_Store", "Thumbs.db", "desktop.ini")
-"""What may stand beside them: the report, and what file managers leave wherever they look."""
+_OF_CAMERAS = ("overlays.jpg", "tracking.csv")
+_LEFT_BEHIND = (".DS_Store", "Thumbs.db", "desktop.ini")
+_BESIDE = (ISB_ANGLES, "report.html", *_OF_CAMERAS, *_LEFT_BEHIND)
+"""What may stand beside them: reports, pictures, and what file managers leave behind."""
 _C3D = "c3d"
 
 

@@ -17,9 +17,10 @@ from kinesphere.report.scene import scene_from_solution
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
 
 _SCRIPTS = ("unpack.js", "space.js", "figure.js", "player.js", "curves.js", "heat.js", "page.js")
+_NOTHING = Markup()
 
 
-def report_html(solution: Solution, title: str = "") -> str:
+def report_html(solution: Solution, title: str = "", extra: Markup = _NOTHING) -> str:
     """Return the report of a solution as one self-contained HTML page.
 
     The page holds a player of the motion, the curve of every angle and residual, and a table a
@@ -32,6 +33,8 @@ def report_html(solution: Solution, title: str = "") -> str:
         As ``kinesphere.solve`` returns it.
     title
         A name for the recording; its model and length, if empty.
+    extra
+        A further section: `tracking_section` of a motion without markers.
     """
     joints = joint_rows(solution)
     scene = scene_from_solution(solution)
@@ -47,6 +50,7 @@ def report_html(solution: Solution, title: str = "") -> str:
         limbs=limb_rows(solution),
         steps=step_cards(solution),
         bodies=bodies_section(solution),
+        extra=extra,
         clinical=clinical_section(solution),
         stride=scene["stride"],
         shown_rate=f"{scene['rate']:g}",
