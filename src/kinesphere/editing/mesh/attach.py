@@ -51,8 +51,9 @@ def attach_surface(
     if settings.fit_girths:
         maps = fit_girths(body, skeleton, maps, settings.marker_height / 1e3)
     matrices, shifts = maps.matrices()
+    finer = max(1.0, body.n_vertices / bundled_body().n_vertices)  # rounds reach as far, in m
     for rounds in _SOFTENING:
-        vertices = _carried_softly(body, matrices, shifts, rounds)
+        vertices = _carried_softly(body, matrices, shifts, round(rounds * finer))
         vertices = untangled(vertices, body.faces, body.weights, body.vertices, maps.turns)
         turned = inverted_faces(vertices, body.faces, body.weights, body.vertices, maps.turns)
         if not turned.any():
