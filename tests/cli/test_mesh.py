@@ -27,6 +27,7 @@ def test_info_tells_what_a_mesh_is(call, obj):
     assert told["extent"][2] == pytest.approx(np.ptp(bundled_body().vertices[:, 1]) * 1e3, abs=1)
 
 
+@pytest.mark.slow
 def test_solve_takes_a_mesh(call, trc, obj, tmp_path):
     done = call("solve", trc, "--set", f"surface.body={obj}", "-o", tmp_path / "out")
     assert done.code == 0, done.err
@@ -45,6 +46,7 @@ def test_a_skeleton_without_a_body_is_said(call, trc, obj, tmp_path):
     assert "no body, as asked" in plain.out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("content", "said"),
     [

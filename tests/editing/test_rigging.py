@@ -39,6 +39,9 @@ def given(vertices, scale=1.0, degrees=(0, 0, 0)):
     return Surface.without_limbs(vertices @ turn.T * scale + 7.0, bundled_body().faces)
 
 
+fits = pytest.mark.slow  # in plain Python, seconds compiled
+
+
 @pytest.fixture(scope="module")
 def recovered():
     """Return pose → (what was found, how far its joints are off, m), in mm and turned over."""
@@ -53,6 +56,7 @@ def recovered():
     return found
 
 
+@fits
 @pytest.mark.parametrize("pose", ARMS_UP)
 def test_joints_and_weights_are_found_again(recovered, pose):
     body, off = recovered[pose]
@@ -62,6 +66,7 @@ def test_joints_and_weights_are_found_again(recovered, pose):
     assert np.quantile(wrong, 0.99) < 0.15
 
 
+@fits
 @pytest.mark.parametrize("pose", ARMS_UP)
 def test_how_it_stood_is_said(recovered, pose):
     found = recovered[pose][0].history[-1].findings
@@ -70,6 +75,7 @@ def test_how_it_stood_is_said(recovered, pose):
     assert found["off_mm"] < 1.0
 
 
+@fits
 @pytest.mark.parametrize("pose", ARMS_UP)
 def test_no_triangle_turns_over_in_the_default_pose(recovered, pose, rng):
     made = make_performance(rng, rate=25.0, calibration_s=2.0, free_s=1.0)
@@ -81,6 +87,7 @@ def test_no_triangle_turns_over_in_the_default_pose(recovered, pose, rng):
     assert tall[0] == pytest.approx(tall[1], rel=0.03)
 
 
+@fits
 def test_another_body_in_odd_axes_is_found():
     """Heavy, female, of other proportions; leaning in its file."""
     vertices, joints = posed(45.0, sex=-1.0, weight=0.6, proportions=-0.4)
@@ -95,6 +102,7 @@ def test_another_body_in_odd_axes_is_found():
     assert np.degrees(turn.magnitude()) < 5.0
 
 
+@fits
 def test_what_is_stated_is_taken():
     vertices, _ = posed(45.0)
     points, normals, _ = surface_samples(vertices, bundled_body().faces, 900)
@@ -133,6 +141,7 @@ def box(size, cuts=6):
     return np.vstack(vertices) * size, np.array(faces)
 
 
+@fits
 def test_what_is_no_person_is_refused():
     body = bundled_body()
     sheet = np.stack(np.meshgrid(np.linspace(0, 1, 12), np.linspace(0, 2, 12), [0.0]), -1)

@@ -26,9 +26,7 @@ def inverted_faces(
     turns : (n_limbs, 3, 3)
         How each limb was turned from the one to the other.
     """
-    carriers = weights[faces].sum(axis=1).argmax(axis=1)
-    wanted = np.einsum("fij,fj->fi", turns[carriers], _normals(source, faces))
-    return np.asarray(np.einsum("fi,fi->f", wanted, _normals(vertices, faces)) <= 0)
+    return _against(vertices, faces, _wanted(faces, weights, source, turns))
 
 
 def neighbours(faces: NDArray[np.intp], count: int) -> csr_array:
@@ -70,11 +68,11 @@ def untangled(
     Only those near such a triangle move. Gives up where that does not help: the caller may count
     with `inverted_faces`.
     """
-    moved = vertices.copy()
+    moved, wanted = vertices.copy(), _wanted(faces, weights, source, turns)
     near = neighbours(faces, len(vertices))
     degree = np.asarray(near.sum(axis=1)).ravel()
     for _ in range(_ROUNDS):
-        wrong = inverted_faces(moved, faces, weights, source, turns)
+        wrong = _against(moved, faces, wanted)
         if not wrong.any():
             break
         around = np.zeros(len(vertices))
@@ -85,6 +83,16 @@ def untangled(
         middle = (near @ moved) / np.maximum(degree, 1.0)[:, None]
         moved += step[:, None] * (middle - moved)
     return moved
+
+
+def _wanted(faces: NDArray[np.intp], weights: Array, source: Array, turns: Array) -> Array:
+    """Return where the limb that carries a triangle most took its normal, (n_faces, 3)."""
+    carriers = weights[faces].sum(axis=1).argmax(axis=1)
+    return np.asarray(np.einsum("fij,fj->fi", turns[carriers], _normals(source, faces)))
+
+
+def _against(vertices: Array, faces: NDArray[np.intp], wanted: Array) -> NDArray[np.bool_]:
+    return np.asarray(np.einsum("fi,fi->f", wanted, _normals(vertices, faces)) <= 0)
 
 
 def _normals(vertices: Array, faces: NDArray[np.intp]) -> Array:
