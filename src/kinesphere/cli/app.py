@@ -15,6 +15,7 @@ from kinesphere.cli.retarget import retarget
 from kinesphere.cli.settings import settings
 from kinesphere.cli.solve import solve
 from kinesphere.cli.track import track
+from kinesphere.cli.view import view
 
 app = typer.Typer(
     name="kinesphere",
@@ -54,6 +55,6 @@ def kinesphere(
 
 
 for command in (
-    demo, info, label, solve, track, edit, retarget, compare, convert, model, settings,
+    demo, info, label, solve, track, view, edit, retarget, compare, convert, model, settings,
 ):  # fmt: skip
     app.command()(command)

@@ -142,12 +142,20 @@ def _normalization(found: dict[str, Any], _: dict[str, Any]) -> str:
     return "; ".join(parts)
 
 
+def _calibration(found: dict[str, Any], _: dict[str, Any]) -> str:
+    sources: dict[int, list[str]] = {}
+    for joint, number in (found.get("axes_from") or {}).items():
+        sources.setdefault(number, []).append(str(joint).replace("_", " "))
+    told = "; ".join(f"{number}: {', '.join(names)}" for number, names in sorted(sources.items()))
+    return f"axes known best by recording {told}" if told else ""
+
+
 def _parameterization(_: dict[str, Any], summary: dict[str, Any]) -> str:
     sources = Counter(joint["axes_from"] for joint in summary["joint_findings"])
     said = {
         "movement": "by their own movements",
         "body": "of the body frame",
-        "reused": "of the other recording",
+        "reused": "of another recording",
         "given": "given",
     }
     counted = ", ".join(f"{n} {said.get(str(s), str(s))}" for s, n in sources.most_common())
@@ -168,7 +176,7 @@ def _surface(found: dict[str, Any], _: dict[str, Any]) -> str:
     text = f"{'the bundled body' if body == 'bundled' else Path(body).name}"
     if "weights" in found:
         text += (
-            f", {found['pose']}-pose, up {found['up']}, facing {found['facing']}, unit "
+            f", {found['pose'] if len(found['pose']) > 1 else found['pose'] + '-pose'}, up {found['up']}, facing {found['facing']}, unit "
             f"{found['unit']}; weights {found['weights']}"
         )
     text += f"; {found['tall_m']:.2f} m tall"
@@ -187,6 +195,7 @@ _WORDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], str]] = {
     "discovery": _discovery,
     "orientation": _orientation,
     "skeleton": _skeleton,
+    "calibration": _calibration,
     "normalization": _normalization,
     "parameterization": _parameterization,
     "editing": _editing,

@@ -12,11 +12,27 @@ from kinesphere.data import Solution
 from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.bodies import find_bodies
 from kinesphere.report.clinical import clinical_section
+from kinesphere.report.moments import moment_rows
 from kinesphere.report.notices import names_of, notices
 from kinesphere.report.scene import scene_from_solution
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
 
-_SCRIPTS = ("unpack.js", "space.js", "figure.js", "player.js", "curves.js", "heat.js", "page.js")
+SCRIPTS = (
+    "unpack.js",
+    "space.js",
+    "figure.js",
+    "mesh.js",
+    "pick.js",
+    "hand.js",
+    "player.js",
+    "curves.js",
+    "track.js",
+    "heat.js",
+    "selection.js",
+    "paper.js",
+    "page.js",
+)
+"""The page's own program, in the order in which the parts build on each other."""
 _NOTHING = Markup()
 
 
@@ -38,7 +54,8 @@ def report_html(solution: Solution, title: str = "", extra: Markup = _NOTHING) -
     """
     joints = joint_rows(solution)
     scene = scene_from_solution(solution)
-    script = Markup("\n".join(asset(name) for name in _SCRIPTS))
+    moments, more = moment_rows(solution)
+    script = Markup("\n".join(asset(name) for name in SCRIPTS))
     page = environment().from_string(asset("page.html.j2"))
     return page.render(
         title=title or "Solved motion",
@@ -50,6 +67,8 @@ def report_html(solution: Solution, title: str = "", extra: Markup = _NOTHING) -
         limbs=limb_rows(solution),
         steps=step_cards(solution),
         bodies=bodies_section(solution),
+        moments=moments,
+        moments_more=more,
         extra=extra,
         clinical=clinical_section(solution),
         stride=scene["stride"],
