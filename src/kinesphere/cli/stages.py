@@ -2,11 +2,11 @@
 
 from collections import Counter
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from kinesphere.cli.surface_words import surface_in_words
 from kinesphere.report import finding_in_words, number_in_words
 
 
@@ -166,25 +166,6 @@ def _parameterization(_: dict[str, Any], summary: dict[str, Any]) -> str:
     )
 
 
-def _surface(found: dict[str, Any], _: dict[str, Any]) -> str:
-    body = str(found.get("body", ""))
-    asked, __, why = body.partition(": ")
-    if asked == "none":
-        return f"no body: {why}" if why else "no body, as asked"
-    if "tall_m" not in found:  # solved by an earlier version
-        return f"{body} body"
-    text = f"{'the bundled body' if body == 'bundled' else Path(body).name}"
-    if "weights" in found:
-        text += (
-            f", {found['pose'] if len(found['pose']) > 1 else found['pose'] + '-pose'}, up {found['up']}, facing {found['facing']}, unit "
-            f"{found['unit']}; weights {found['weights']}"
-        )
-    text += f"; {found['tall_m']:.2f} m tall"
-    if turned := found.get("inverted_triangles"):
-        text += f"; {turned} triangles lie folded over"
-    return text
-
-
 def _mm(value: float) -> str:
     return number_in_words(value, "mm")
 
@@ -199,7 +180,7 @@ _WORDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], str]] = {
     "normalization": _normalization,
     "parameterization": _parameterization,
     "editing": _editing,
-    "surface": _surface,
+    "surface": surface_in_words,
     "scene": _scene,
     "scene checks": _scene_checks,
     "track": _track,
