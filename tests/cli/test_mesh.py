@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from kinesphere.cli.surface_words import surface_in_words
 from kinesphere.data import bundled_body
 
 
@@ -41,9 +42,13 @@ def test_solve_takes_a_mesh(call, trc, obj, tmp_path):
     assert (tmp_path / "out" / "motion.glb").stat().st_size > 100_000
 
 
-def test_a_skeleton_without_a_body_is_said(call, trc, obj, tmp_path):
+def test_a_skeleton_without_a_body_is_said(call, trc, tmp_path):
     plain = call("solve", trc, "--set", "surface.body=none", "-o", tmp_path / "a")
     assert "no body, as asked" in plain.out
+    why = {"body": "none: the root is called limb_01; a body needs pelvis or trunk"}
+    assert surface_in_words({"body": "bundled", **why}, {}).startswith(
+        "no body: the root is called"
+    )
 
 
 @pytest.mark.slow
