@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from kinesphere.cli.surface_words import surface_in_words
 from kinesphere.report import finding_in_words, number_in_words
 
 
@@ -179,6 +180,7 @@ _WORDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], str]] = {
     "normalization": _normalization,
     "parameterization": _parameterization,
     "editing": _editing,
+    "surface": surface_in_words,
     "scene": _scene,
     "scene checks": _scene_checks,
     "track": _track,

@@ -51,3 +51,4 @@ from kinesphere.data.skeleton import Observability as Observability
 from kinesphere.data.skeleton import Skeleton as Skeleton
 from kinesphere.data.solution import Solution as Solution
 from kinesphere.data.surface import Surface as Surface
+from kinesphere.data.twist import TwistJoints as TwistJoints

@@ -7,6 +7,7 @@ from kinesphere.editing.apply import moved_markers as moved_markers
 from kinesphere.editing.apply import moved_poses as moved_poses
 from kinesphere.editing.mesh import SurfaceSettings as SurfaceSettings
 from kinesphere.editing.mesh import attach_surface as attach_surface
+from kinesphere.editing.mesh import prepared_surface as prepared_surface
 from kinesphere.editing.mesh import skin as skin
 from kinesphere.editing.parameters import edit_parameters as edit_parameters
 from kinesphere.editing.retarget import retarget_motion as retarget_motion

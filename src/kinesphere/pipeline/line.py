@@ -17,7 +17,7 @@ from kinesphere.pipeline.doubts import calibration_doubts, with_checks
 from kinesphere.pipeline.motion_alone import discovered, normalized_somehow
 from kinesphere.pipeline.reuse import Source, skeletons_of, with_best_axes
 from kinesphere.pipeline.settings import Settings
-from kinesphere.pipeline.surface import surface_for
+from kinesphere.pipeline.surface import body_for, surface_for
 from kinesphere.quality import orient
 from kinesphere.skeleton import fill_markers, fit_skeleton
 
@@ -77,6 +77,7 @@ def solve(
     if recording.n_frames == 0 or not recording.seen.any():
         raise BadRecording("the recording holds no marker position: nothing to solve")
     clock = _Clock(progress)
+    body = body_for(settings.surface)  # first, so that a file that cannot be used costs no wait
     given = model_for(recording, model, subject)
     with clock.stage("discovery" if given is None else "labelling"):
         if given is None:
@@ -117,7 +118,7 @@ def solve(
             motion, settings.parameterization, calibration=calibration, reuse=reuse
         )
     with clock.stage("surface"):
-        surface, step = surface_for(motion, settings.surface)
+        surface, step = surface_for(motion, settings.surface, body)
         parameters = replace(parameters, history=(*parameters.history, step))
     return Solution(
         recording=oriented,
