@@ -32,8 +32,9 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         for i, run in enumerate((real.pose2sim, real.parsec)):
             if asked.only in run.__name__ and real.DATA.is_dir():
-                found.append(run(Path(folder) / str(i)))
-                print(found[-1], flush=True)
+                for one in run(Path(folder) / str(i)):
+                    found.append(one)
+                    print(one, flush=True)
     if not asked.only and asked.frames >= 300:
         PAGE.write_text(page(films, found, asked.frames), encoding="utf-8")
     return int(any(outcome.missed for outcome in films))

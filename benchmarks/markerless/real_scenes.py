@@ -17,17 +17,22 @@ _CROPPED = {"cam01", "cam02"}
 """Their videos are 1080 pixels wide, their calibration is for 1088 and was matched by features."""
 
 
-def write_pose2sim_scene(folder: Path, data: Path = DATA, *, qualisys: bool = False) -> Path:
+def write_pose2sim_scene(
+    folder: Path, data: Path = DATA, *, qualisys: bool = False, masks: bool = False
+) -> Path:
     """Write the scene of one person balancing before clutter; return its path.
 
     Parameters
     ----------
+    masks
+        Whether the mask of frame 5 serves the start; else all four are only compared with.
     qualisys
         With the calibration as it was shipped, 15 px off, instead of the better one.
     """
     video = (data / "video" / "pose2sim").resolve()
     calibration = video / ("Calib.qca.txt" if qualisys else "Calib_scene.toml")
     lines = [f"calibration = {json.dumps(str(calibration))}", 'up = "+z"']
+    what = "masks" if masks else "reference_masks"
     if not qualisys:
         lines.append('unit = "m"')
     for name in ("cam01", "cam02", "cam03", "cam04"):
@@ -37,11 +42,13 @@ def write_pose2sim_scene(folder: Path, data: Path = DATA, *, qualisys: bool = Fa
             "[[camera]]",
             f"name = {json.dumps(called)}",
             f"images = {json.dumps(str(video / f'{name}.mp4'))}",
-            f"reference_masks = {json.dumps(str(video / 'masks' / f'{name}_*.png'))}",
+            f"{what} = {json.dumps(str(video / 'masks' / f'{name}_*.png'))}",
             "first_mask = 0",
         ]
         if name in _CROPPED:
             lines.append("calibration_pixel = { scale = 1.0075, shift = [0.0, -7.2] }")
+    if masks:
+        lines += ["", "[start]", "frame = 5"]
     return _written(folder, lines)
 
 

@@ -22,6 +22,8 @@ AGREE = 0.5
 REJECT = 3.0
 """Matches farther apart than so many times the median are left out."""
 _DAMPING = 1e-3
+_DRAWN = 3
+"""Steps for which one drawing of what hides what must do."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +64,7 @@ class ContourFitter:
             iterations = max(1, s.contour_iterations // rounds)
             for k in range(iterations):
                 radius = s.radius / (1 + i * iterations + k) ** 0.5
-                pose, step = self._step(pose, contours, priors, radius)
+                pose, step = self._step(pose, contours, priors, radius, draw=k % _DRAWN == 0)
                 if step < 1e-4:
                     break
         return pose
@@ -89,6 +91,7 @@ class ContourFitter:
         contours: list[Contour | None],
         priors: tuple[Prior, ...],
         radius: float,
+        draw: bool,
     ) -> tuple[Pose, float]:
         body, s = self.fitter.body, self.fitter.settings
         at = posed(body.chain, pose)
@@ -98,7 +101,8 @@ class ContourFitter:
         for eye, contour in zip(self.fitter.eyes, contours, strict=True):
             if contour is None or len(contour.points) == 0:
                 continue
-            rim = eye.canvas.rim(points, normals, eye.canvas.draw(points))
+            parts = eye.canvas.draw(points) if draw else eye.canvas.drawn
+            rim = eye.canvas.rim(points, normals, parts)
             which, targets, outward = matches(contour, rim, radius)
             if len(which) == 0:
                 continue

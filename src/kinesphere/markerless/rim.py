@@ -69,6 +69,11 @@ class Canvas:
         )
         self._pixels, self._depths = np.empty((len(body.bind), 2)), np.empty(len(body.bind))
 
+    @property
+    def drawn(self) -> Parts:
+        """What was drawn last."""
+        return Parts(self._parts, self._nearness)
+
     def draw(self, points: Array) -> Parts:
         """Draw the surface, (n_vertices, 3) m in the world; the buffers are this canvas' own."""
         view, h = self.view, self.view.height
@@ -81,14 +86,14 @@ class Canvas:
         rows = rows[np.isfinite(rows)]
         if len(rows) == 0:
             self._rows = (0, 0)
-            return Parts(self._parts, self._nearness)
+            return self.drawn
         top, bottom = (int(np.clip(r, 0, h)) for r in (rows.min() - 1, rows.max() + 2))
         self._rows = (top, bottom)
         visible_faces_kernel(
             self._pixels, self._depths, self.body.faces, True, self._nearness, self._faces
         )
         parts_kernel(self._faces, self.body.part_of_face, top, bottom, self._parts)
-        return Parts(self._parts, self._nearness)
+        return self.drawn
 
     def rim(self, points: Array, normals: Array, parts: Parts) -> Rim:
         """Return the visible rim of a posed surface, by what ``draw`` showed."""

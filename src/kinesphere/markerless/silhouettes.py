@@ -28,7 +28,9 @@ def start_masks(scene: Scene, views: Sequence[View], frame: Frame) -> list[Pictu
         views, frame.images, frame.masks, scene.plates, strict=True
     ):
         if mask is not None:
-            out.append(view.image(mask))
+            given = view.image(mask)
+            piece = largest_piece((given > 127).astype(np.uint8) * 255)
+            out.append(np.where(_grown(piece), given, np.uint8(0)))
         elif picture is None:
             out.append(None)
         elif plate is not None:
@@ -73,6 +75,10 @@ def largest_piece(mask: Picture) -> Picture:
         return np.zeros_like(mask)
     best = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
     return np.asarray((labels == best) * 255, dtype=np.uint8)
+
+
+def _grown(mask: Picture) -> NDArray[np.bool_]:
+    return np.asarray(cv2.dilate(mask, np.ones((5, 5), np.uint8)) > 0)
 
 
 def looked_at(views: Sequence[View]) -> Array:

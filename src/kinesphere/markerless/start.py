@@ -21,6 +21,11 @@ from kinesphere.markerless.shape import FACTORS, shaped
 from kinesphere.markerless.shape_fit import Instant, fit_shape
 from kinesphere.markerless.stance import Stance, stances_of
 
+_KEPT = 5
+"""Coarse starts that are fitted closely."""
+_APART = 0.7
+"""Cosine between two headings above which they count as one."""
+_SHAPE = (((8, 2), (4, 3)), ((4, 2), (2, 3), (1, 3)))
 _COARSE = ((8, 6), (4, 3))
 _FINER = ((8, 3), (4, 4), (2, 3))
 
@@ -96,7 +101,7 @@ def find_start(
             tried.append((_mean(overlaps(sized, found, masks)), found, logs))
     tried.sort(key=lambda one: -one[0])
     finer = []
-    for _, pose, logs in tried[:4]:
+    for _, pose, logs in _unlike(tried, _KEPT):
         sized = with_body(fitter, model(shaped(surface, logs)))
         pose = with_best_arms(sized, pose)
         pose = sized.fit(pose, (rest(sized.body.chain, sized.settings, pose),), _FINER)
@@ -108,6 +113,20 @@ def find_start(
     _, pose, logs = best
     sized = with_body(fitter, model(shaped(surface, logs)))
     return Start(pose, logs, overlaps(sized, pose, masks))
+
+
+def _unlike(tried: Sequence[tuple[float, Pose, Array]], n: int) -> list[tuple[float, Pose, Array]]:
+    """Return the best few of sorted candidates: of each heading the best, then the rest."""
+    first: list[int] = []
+    for i, (_, pose, _) in enumerate(tried):
+        ahead = pose.balls[0][:, 0]
+        if all(ahead @ tried[j][1].balls[0][:, 0] < _APART for j in first):
+            first.append(i)
+    rest_of = [i for i in range(len(tried)) if i not in first]
+    # one in three places is kept for second bests: of one heading, the other size or legs
+    spare = n // 3
+    chosen = first[: n - spare] + rest_of[:spare]
+    return [tried[i] for i in sorted((chosen + first[n - spare :] + rest_of[spare:])[:n])]
 
 
 def with_best_arms(fitter: Fitter, pose: Pose) -> Pose:
@@ -146,7 +165,7 @@ def _with_shape(
     done = []
     for _, start, start_logs in candidates:
         pose, logs = start, start_logs
-        for schedule in (((8, 2), (4, 3)), ((4, 2), (2, 3), (1, 3))):
+        for schedule in _SHAPE:
             logs, poses = fit_shape(
                 fitter,
                 surface,

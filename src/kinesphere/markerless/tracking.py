@@ -65,7 +65,8 @@ class Tracking:
         pose = (self.contours or self.fitter).fit(guess, priors)
         self.before, self.last = self.last, pose
         found = self._judged(pose, learn=settings.learning)
-        if settings.recover and (names := self.watch.due(chain, found.lost)):
+        missed = found.lost | np.isnan(found.gain)  # nobody sees it: it may be elsewhere
+        if settings.recover and (names := self.watch.due(chain, missed)):
             better = recovered(self.fitter, pose, names)
             if better is not None:
                 self.before, self.last = None, better  # it did not move there: it was there
