@@ -1,6 +1,7 @@
 """Whether the limbs that a person names for parts of a figure can be those parts."""
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 from kinesphere.data.skeleton import Skeleton
 from kinesphere.data.tree import way_to_root
@@ -64,5 +65,5 @@ def _pairs(parts: Mapping[str, int]) -> list[tuple[str, str]]:
     for side in ("left", "right"):
         for chain in _CHAINS:
             there = [name for part in chain if (name := f"{side}_{part}") in parts]
-            found += list(zip(there[:-1], there[1:], strict=True))
+            found += list(pairwise(there))
     return found
