@@ -62,6 +62,14 @@ def test_parameters_alone_can_be_compared_with_the_folder(solved, call):
     assert max(j["orientation_after_deg"] for j in found["joints"]) < 8
 
 
+def test_its_own_bvh_stands_for_a_folder(solved, call):
+    found = json.loads(call("compare", solved, solved / "motion.bvh", "--json").out)
+    assert found["offset_s"] == 0
+    assert "left_elbow" in {j["name"] for j in found["joints"]}
+    assert found["only_in_second"] == {"limbs": [], "joints": []}
+    assert max(j["orientation_after_deg"] for j in found["joints"]) < 0.5
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [

@@ -45,7 +45,7 @@ def test_the_elbow_is_bent_where_the_file_says(solved, folders, call):
     step = after.history[-1]
     assert step.name == "editing"
     assert list(step.settings["edits"][0]["frames"]) == [100, 200]
-    assert "1 edits: left_elbow in 101 frames" in " ".join(
+    assert "1 edit: left_elbow in 101 frames" in " ".join(
         call("info", folders / "bent").out.split()
     )
 

@@ -118,7 +118,10 @@ def test_a_mapping_and_settings_are_heeded(call, solved, performance, tmp_path):
         (["--onto", "none.bvh", "-o", "x.bvh"], "no such file"),
         (["--onto", "MAP", "-o", "x.bvh"], "holds text"),
         (["--onto", "RIG", "--map", "MAP", "-o", "x.bvh"], "tables are [rig] and [source]"),
-        (["--height", "-1", "-o", "x.bvh"], "0.01 to 100"),
+        (["--height", "-1", "-o", "x.bvh"], "--height -1: the figure is 1."),
+        (["--height", "nan", "-o", "x.bvh"], "--height nan: the figure is 1."),
+        (["--height", "1e9", "-o", "x.bvh"], "m can be made of it"),
+        (["--height", "1.7", "-o", "x.xyz"], ".bvh (BVH), .glb, .gltf (glTF), .limbs.csv"),
         (["--height", "1.7", "-o", "x.xyz"], "names no format"),
     ],
 )

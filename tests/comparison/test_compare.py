@@ -13,6 +13,7 @@ from kinesphere.comparison.timing import pooled_correlation
 from kinesphere.data import Motion, PoseFlag
 from kinesphere.errors import BadRecording, BadSetting, DegenerateMotion
 from kinesphere.geometry.rotations import rotation_about
+from kinesphere.io import read, write_bvh
 from kinesphere.synthetic import make_performance
 
 RATE = 100.0
@@ -305,15 +306,6 @@ def test_what_cannot_be_compared_is_refused(motion, performance):
         compare(motion, motion, offset=float("nan"))
     with pytest.raises(BadRecording, match="Recording cannot be compared"):
         compare(performance.recording, motion)
-    skeleton = motion.skeleton
-    strange = replace(
-        motion,
-        skeleton=replace(
-            skeleton, joints=tuple(replace(j, name=f"x_{j.name}") for j in skeleton.joints)
-        ),
-    )
-    with pytest.raises(DegenerateMotion, match="no joint has the same name"):
-        compare(motion, strange)
     unseen = replace(motion, rotations=np.full_like(motion.rotations, np.nan))
     with pytest.raises(BadRecording, match="no limb has a pose"):
         compare(motion, unseen)
@@ -458,3 +450,36 @@ def test_a_body_in_one_piece_is_compared_with_one_that_has_a_pelvis(motion):
     assert any("left_hip hangs from trunk here and from pelvis there" in w for w in found.warnings)
     assert found.parameter("left_hip", "flexion").after.rmsd < EXACT
     assert {limb.other for limb in found.limbs if limb.limb == "trunk"} == {"trunk", "pelvis"}
+
+
+@pytest.mark.parametrize("names", ["kinesphere", "unity", "motionbuilder"])
+@pytest.mark.parametrize("first", [True, False])
+def test_its_own_bvh_is_the_same_motion(motion, tmp_path, names, first):
+    """BVH calls joints as the limbs below them, in the words of any program."""
+    write_bvh(motion, tmp_path / "own.bvh", names=names)
+    bvh = read(tmp_path / "own.bvh")
+    assert not set(bvh.skeleton.joint_names) & set(motion.skeleton.joint_names)
+    found = compare(bvh, motion) if first else compare(motion, bvh)
+    assert {joint.name for joint in found.joints} == set(motion.skeleton.joint_names)
+    assert found.limbs_only_first == found.limbs_only_second == ()
+    assert found.joints_only_first == found.joints_only_second == ()
+    assert found.offset.seconds == 0
+    assert worst(found) < 1e-6  # rad; what the decimals of a BVH file keep
+    assert max(joint.centre for joint in found.joints) < 1e-4
+    assert found.parameter("left_knee", "flexion").after.rmsd < 1e-6
+
+
+def test_only_names_tell_which_limbs_are_alike(motion):
+    """The same tree in names that mean nothing is another body."""
+    skeleton = motion.skeleton
+    limbs = tuple(
+        replace(one, name=f"x_{one.name}", parent=one.parent and f"x_{one.parent}")
+        for one in skeleton.limbs
+    )
+    joints = tuple(
+        replace(one, name=f"x_{one.child}", child=f"x_{one.child}", parent=f"x_{one.parent}")
+        for one in skeleton.joints
+    )
+    strange = replace(motion, skeleton=replace(skeleton, limbs=limbs, joints=joints))
+    with pytest.raises(DegenerateMotion, match="no joint is the same on both sides"):
+        compare(motion, strange)

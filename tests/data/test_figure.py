@@ -147,6 +147,29 @@ def test_a_persons_word_counts():
         find_figure(skeleton, {"head": "Kopf"})
 
 
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [
+        ({"left_hand": "LeftFoot", "left_foot": "LeftFoot"}, "both left_hand and left_foot"),
+        ({"left_forearm": "LeftUpLeg"}, "both left_forearm and left_thigh; name another limb for"),
+        ({"left_forearm": "Hips"}, "left_forearm is 'Hips', which does not hang from 'LeftArm'"),
+        ({"left_upper_arm": "LeftHandThumb1"}, "does not hang from 'LeftHandThumb1'"),
+        ({"left_hand": "RightHandThumb1"}, "does not hang from 'LeftForeArm'"),
+        ({"left_forearm": "", "left_hand": "RightHandThumb1"}, "does not hang from 'LeftArm'"),
+        ({"head": "Hips"}, "head is to be 'Hips', but both legs hang from it"),
+    ],
+)
+def test_a_persons_word_that_cannot_be_is_refused(said, message):
+    with pytest.raises(BadModel, match=message):
+        find_figure(rig(), said)
+
+
+def test_parts_may_be_named_one_further_down():
+    said = {"left_upper_arm": "LeftShoulder", "left_forearm": "LeftArm", "left_hand": "LeftForeArm"}
+    found = parts_of(rig(), find_figure(rig(), said))
+    assert {part: found[part] for part in said} == said
+
+
 def test_an_arm_alone_is_no_figure():
     bones = [Bone("a", -1, np.zeros(3), None), Bone("b", 0, np.array([0, 1.0, 0]), None)]
     with pytest.raises(BadModel, match="name them in a mapping"):

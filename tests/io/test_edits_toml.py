@@ -54,6 +54,7 @@ def test_any_name_survives(tmp_path):
         ("[[edit]", "no TOML"),
         ('[[edit]]\njoint = "neck"\naxis = 1', "needs either add_deg or set_deg"),
         ('[[edit]]\njoint = "neck"\naxis = 1\nadd_deg = 1\nset_deg = 2', "and not both"),
+        ('[[edit]]\njoint = "neck"\naxis = true\nadd_deg = 1', "it is true; 1, 2, 3"),
         ('[[edit]]\njoint = "neck"\naxis = 4\nadd_deg = 1', r"edit\[0\].axis"),
         ('[[edit]]\njoint = "neck"\naxis = 1\nadd_deg = nan', r"edit\[0\].add_deg"),
         ('[[edit]]\njoint = "neck"\naxis = 1\nadd_deg = "x"', r"edit\[0\].add_deg"),

@@ -146,6 +146,13 @@ def test_what_cannot_be_used_is_named():
     assert_array_equal(kept, np.arange(body.n_vertices))
 
 
+def test_a_face_of_a_vertex_that_is_not_there_is_said_in_words(tmp_path):
+    path = tmp_path / "a.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99\n", encoding="utf-8")
+    with pytest.raises(UnreadableFile, match="OBJ file: a face names a vertex that is not there"):
+        read(path)
+
+
 @pytest.fixture
 def rig(performance, tmp_path):
     """Return an actor, its surface, and the glTF file of both."""

@@ -255,8 +255,13 @@ def test_a_skeleton_needs_no_skin(tmp_path, animated):
     ("changes", "said"),
     [
         ({"skins": [], "nodes": [{"mesh": 0}], "scenes": []}, "no skin"),
-        ({"skins": [{"joints": [99]}]}, "damaged"),
-        ({"skins": [{}]}, "damaged"),
+        ({"skins": [{"joints": [99]}]}, "damaged: it refers to something that is not there"),
+        ({"skins": [{}]}, "damaged: 'joints' is missing"),
+        ({"skins": [3]}, "damaged: something in it is of the wrong kind"),
+        (
+            {"nodes": [{"rotation": [0, 0, 0, 0]}], "skins": [{"joints": [0]}]},
+            "damaged: a node's rotation is 0, 0, 0, 0",
+        ),
         ({"nodes": [{"children": [0]}], "skins": [{"joints": [0]}]}, "in a circle"),
         ({"nodes": [{"scale": [0, 0, 0]}], "skins": [{"joints": [0]}]}, "no size"),
         ({"nodes": [{}, {}], "skins": [{"joints": [0, 1]}]}, "nothing they share"),

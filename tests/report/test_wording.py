@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from kinesphere.report import finding_in_words, number_in_words, rms, unique
+from kinesphere.report import counted, finding_in_words, number_in_words, rms, unique
 
 
 @pytest.mark.parametrize(
@@ -55,3 +55,8 @@ def test_rms_leaves_out_what_is_not_known():
 
 def test_unique_keeps_the_order():
     assert unique(["b", "a", "b"]) == ["b", "a"]
+
+
+@pytest.mark.parametrize(("n", "text"), [(0, "0 frames"), (1, "1 frame"), (1854, "1,854 frames")])
+def test_one_is_not_many(n, text):
+    assert counted(n, "frame") == text

@@ -33,7 +33,8 @@ def compare(
 
     What differs by definition is found, told and taken out: the time offset, the world, and the
     constant turn between the frames of each limb. Differences are B minus A. A parameter table
-    (with skeleton.json beside it) or any readable motion may stand for a solved folder.
+    (with skeleton.json beside it) or any readable motion may stand for a solved folder; joints are
+    known by their names or their limbs', as BVH has them, in the words of other programs, too.
 
     Example: [bold]kinesphere compare markers markerless --joint left_elbow -o both.html[/bold]
     """

@@ -70,24 +70,40 @@ def write_as_set(found: object, target: Path, settings: "Settings | None") -> No
 
     from kinesphere.data import Motion
     from kinesphere.io import recording_of_joints, write, write_bvh
+    from kinesphere.io.registry import no_format
 
     points = target.suffix.lower() in (".c3d", ".trc", ".csv") and ".limbs" not in target.suffixes
     if isinstance(found, Motion) and points:
         write(recording_of_joints(found), target)
     elif settings is not None and isinstance(found, Motion) and target.suffix.lower() == ".bvh":
         write_bvh(found, target, **asdict(settings.bvh))
+    elif isinstance(found, Motion) and not _has_format(found, target):
+        raise no_format(target, "Motion", "Recording")
     else:
         write(found, target)
 
 
 def part_for(solution: "Solution", target: Path) -> object:
-    """Return what of a solution the target's format holds: the parameters rather than markers."""
-    from kinesphere.io import known_formats
+    """Return what of a solution the target's format holds: the parameters rather than markers.
+
+    Raises
+    ------
+    UnknownFormat
+        If the target has a suffix that names no format for any of it.
+    """
+    from kinesphere.io.registry import no_format
 
     parts = (solution, solution.motion, solution.parameters, solution.skeleton, solution.recording)
-    suffix = target.suffix.lower()
+    if not target.suffix or target.is_dir():
+        return solution
     for part in parts:
-        kind = type(part).__name__
-        if suffix and any(f.is_named_by(target) and kind in f.writers for f in known_formats()):
+        if _has_format(part, target):
             return part
-    return solution
+    raise no_format(target, *(type(part).__name__ for part in parts))
+
+
+def _has_format(part: object, target: Path) -> bool:
+    from kinesphere.io import known_formats
+
+    kind = type(part).__name__
+    return any(f.is_named_by(target) and kind in f.writers for f in known_formats())

@@ -7,6 +7,7 @@ import numpy as np
 
 from kinesphere.cli.console import print_pairs, print_table, print_title, print_warnings, stdout
 from kinesphere.comparison import Agreement, Comparison, ParameterComparison
+from kinesphere.report import counted
 
 
 def describe_comparison(found: Comparison) -> dict[str, Any]:
@@ -89,7 +90,10 @@ def show_comparison(found: Comparison, title: str) -> None:
     how = "given" if offset.given else f"limb speeds correlate by {offset.correlation:.3f}"
     pairs = [
         ("time offset", f"{offset.seconds:+.4f} s ({how})"),
-        ("in common", f"{len(found.times):,} frames, {offset.overlap:.2f} s at {found.rate:g} Hz"),
+        (
+            "in common",
+            f"{counted(len(found.times), 'frame')}, {offset.overlap:.2f} s at {found.rate:g} Hz",
+        ),
     ]
     if world is not None:
         pairs.append(

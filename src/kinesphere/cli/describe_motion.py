@@ -6,7 +6,7 @@ from kinesphere.cli.console import print_pairs, print_table, print_title, print_
 from kinesphere.data import Motion, Skeleton
 from kinesphere.data.figure import find_figure
 from kinesphere.errors import BadModel
-from kinesphere.report import number_in_words
+from kinesphere.report import counted, number_in_words
 
 
 def describe_motion(motion: Motion) -> dict[str, Any]:
@@ -54,7 +54,7 @@ def show_motion(summary: dict[str, Any]) -> None:
         console,
         summary["file"],
         f"{str(read.get('format', 'motion')).upper()}, {len(summary['limbs'])} limbs, "
-        f"{summary['n_frames']:,} frames, {summary['duration_s']:.2f} s",
+        f"{counted(summary['n_frames'], 'frame')}, {summary['duration_s']:.2f} s",
     )
     pairs = [("rate", f"{summary['rate_hz']:g} Hz"), ("seen", f"{summary['seen']:.1%}")]
     if "metres_per_unit" in read:

@@ -13,7 +13,7 @@ from kinesphere.cli.console import (
 from kinesphere.cli.stages import stage_in_words
 from kinesphere.data import Solution
 from kinesphere.io.summary import summary_of
-from kinesphere.report import JointRow, joint_rows, names_of, rms, unique
+from kinesphere.report import JointRow, counted, joint_rows, names_of, rms, unique
 
 
 def describe_solution(solution: Solution) -> dict[str, Any]:
@@ -48,8 +48,8 @@ def show_solution(summary: dict[str, Any], solution: Solution) -> None:
     print_title(
         console,
         summary["file"],
-        f"model {summary['model']}, {len(summary['limbs'])} limbs, {summary['n_frames']:,} frames, "
-        f"{seconds:.2f} s",
+        f"model {summary['model']}, {counted(len(summary['limbs']), 'limb')}, "
+        f"{counted(summary['n_frames'], 'frame')}, {seconds:.2f} s",
     )
     rows = [
         (

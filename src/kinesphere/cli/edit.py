@@ -31,6 +31,7 @@ def edit(
     from kinesphere.data.edits import change_in_words, frames_in_words
     from kinesphere.editing import apply_edits
     from kinesphere.io import check_solution_place, read_edits
+    from kinesphere.report import counted
 
     check_apart(output, directory)
     check_solution_place(output, [REPORT])
@@ -43,7 +44,7 @@ def edit(
         print_json({**summary, "warnings": list(step.warnings)})
         return
     console = stdout()
-    print_title(console, str(directory), f"{len(edits)} edits")
+    print_title(console, str(directory), counted(len(edits), "edit"))
     rows = [
         (
             one.joint,

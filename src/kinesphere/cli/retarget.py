@@ -28,8 +28,8 @@ def retarget(
             "-o",
             "--output",
             metavar="OUT",
-            help="What to write: for a rig a file of its format, else a folder or a file whose "
-            "suffix says the format.",
+            help="What to write: for a rig a file of its format (in others its skeleton alone), "
+            "else a folder or a file whose suffix says the format.",
         ),
     ],
     onto: Annotated[
@@ -62,7 +62,9 @@ def retarget(
 ) -> None:
     """Put a motion on another skeleton: limbs point as they did, feet stand where they stand.
 
-    A rig comes back in its own format with the motion on it, everything else in it untouched.
+    A rig comes back in its own format with the motion on it, everything else in it untouched; where
+    OUT has another suffix, the rig's skeleton alone is written in that format, with the motion on
+    it (a BVH rig as .glb: bones without a body).
     Limbs are known by their names (Mixamo, Unity, Unreal, Rigify, CMU…) or by the shape of the
     rest pose, T, A or standing.
 
@@ -120,6 +122,7 @@ def _retargeted(
     from kinesphere.cli.files import write_solved
     from kinesphere.data import Skeleton, Solution
     from kinesphere.editing import stature
+    from kinesphere.editing.scaling import LEAST, MOST
     from kinesphere.io import read, read_rig, rig_format, write_on_rig
     from kinesphere.pipeline import retarget as put
 
@@ -128,7 +131,13 @@ def _retargeted(
     if onto is None:
         assert height is not None
         motion = found.motion if isinstance(found, Solution) else found
-        target = height / stature(motion)
+        tall = stature(motion)
+        target = height / tall
+        if not LEAST <= target <= MOST:
+            raise BadArgument(
+                f"--height {height:g}: the figure is {tall:.2f} m tall, and {LEAST * tall:.2g} to "
+                f"{MOST * tall:.3g} m can be made of it"
+            )
     elif rig is not None:
         target = read_rig(onto)
     else:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from kinesphere.cli.surface_words import surface_in_words
-from kinesphere.report import finding_in_words, number_in_words
+from kinesphere.report import counted, finding_in_words, number_in_words
 
 
 def stage_in_words(stage: dict[str, Any], summary: dict[str, Any]) -> str:
@@ -32,7 +32,9 @@ def _any(found: dict[str, Any], _: dict[str, Any]) -> str:
 def _read(found: dict[str, Any], summary: dict[str, Any]) -> str:
     kind = [str(found.get("format", "")).upper(), found.get("encoding"), found.get("unit")]
     head = ", ".join(str(word) for word in kind if word)
-    return f"{head}, {summary['n_frames']:,} frames at {summary['rate_hz']:g} Hz".lstrip(", ")
+    return f"{head}, {counted(summary['n_frames'], 'frame')} at {summary['rate_hz']:g} Hz".lstrip(
+        ", "
+    )
 
 
 def _labelling(found: dict[str, Any], summary: dict[str, Any]) -> str:
@@ -71,7 +73,7 @@ def _scene(found: dict[str, Any], summary: dict[str, Any]) -> str:
     cameras = found.get("cameras", [])
     return (
         f"{len(cameras)} cameras ({', '.join(map(str, cameras[:4]))}"
-        f"{', …' if len(cameras) > 4 else ''}), {summary['n_frames']:,} frames at "
+        f"{', …' if len(cameras) > 4 else ''}), {counted(summary['n_frames'], 'frame')} at "
         f"{summary['rate_hz']:g} Hz; {found.get('unit')}, up was {found.get('up')}"
     )
 
@@ -102,8 +104,8 @@ def _tracking_result(found: dict[str, Any], _: dict[str, Any]) -> str:
 
 
 def _editing(found: dict[str, Any], _: dict[str, Any]) -> str:
-    joints = ", ".join(f"{joint} in {n:,} frames" for joint, n in found["frames"].items())
-    return f"{len(found['edits'])} edits: {joints}"
+    joints = ", ".join(f"{joint} in {counted(n, 'frame')}" for joint, n in found["frames"].items())
+    return f"{counted(len(found['edits']), 'edit')}: {joints}"
 
 
 def source_in_words(source: object) -> str:

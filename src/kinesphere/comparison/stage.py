@@ -5,6 +5,7 @@ import numpy as np
 from kinesphere.comparison.alignment import LimbAlignment, fit_limb, fit_world
 from kinesphere.comparison.angles import JointPoses, bend, clinical, own_axes, own_before
 from kinesphere.comparison.doubts import warnings_of
+from kinesphere.comparison.matching import called_alike
 from kinesphere.comparison.refinement import common_times, joint_centres, refined
 from kinesphere.comparison.result import Comparison, JointComparison, ParameterComparison
 from kinesphere.comparison.sides import Side, relative, sampled, side_from
@@ -28,7 +29,8 @@ def compare(
     What differs by definition is found and taken out first: the time offset, the world, and the
     constant turn between the two frames of every limb, for much of the published difference
     between systems is the definition of frames. Differences before and after are both told.
-    Limbs and joints are matched by name.
+    Limbs and joints are matched by name, joints also by their child limbs, as BVH calls them, and
+    limbs by what other programs' names mean.
 
     Parameters
     ----------
@@ -50,11 +52,11 @@ def compare(
     BadRecording, BadSetting
         If one of them has no pose at all; if the offset is not finite.
     """
-    a, b = side_from(first), side_from(second)
+    a, b = called_alike(side_from(first), side_from(second))
     names = [n for n in a.skeleton.joint_names if n in b.skeleton.joint_names]
     if not names:
         raise DegenerateMotion(
-            "no joint has the same name on both sides: "
+            "no joint is the same on both sides by its name or its limb's: "
             f"{', '.join(a.skeleton.joint_names[:4]) or 'none'} here, "
             f"{', '.join(b.skeleton.joint_names[:4]) or 'none'} there"
         )

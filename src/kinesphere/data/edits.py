@@ -2,7 +2,14 @@
 
 from typing import Annotated, Literal, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    StringConstraints,
+    field_validator,
+    model_validator,
+)
 
 Angle = Annotated[float, Field(allow_inf_nan=False, ge=-3600.0, le=3600.0)]
 Length = Annotated[float, Field(allow_inf_nan=False, ge=0.0)]
@@ -37,6 +44,15 @@ class Edit(BaseModel):
     """The same in s since the first stored frame. Neither: every frame."""
     blend_s: Length = 0.0
     """s before the first and after the last frame in which the change comes and goes."""
+
+    @field_validator("axis", mode="before")
+    @classmethod
+    def _no_truth(cls, value: object) -> object:
+        if isinstance(value, bool):  # Python takes true for 1
+            raise ValueError(
+                f"it is {str(value).lower()}; 1, 2, 3, 'twist', 'x', 'y' or 'z' is right"
+            )
+        return value
 
     @model_validator(mode="after")
     def _means_one_thing(self) -> "Edit":

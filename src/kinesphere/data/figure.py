@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from kinesphere.data.arrays import Array
+from kinesphere.data.figure_given import check_given, check_trunk
 from kinesphere.data.figure_names import Part, part_from_name
 from kinesphere.data.figure_shape import parts_by_shape
 from kinesphere.data.rest import default_origins
@@ -64,7 +65,8 @@ def find_figure(skeleton: Skeleton, given: Mapping[str, str] | None = None) -> F
     Raises
     ------
     BadModel
-        If there are no two legs, or a given part or limb does not exist.
+        If there are no two legs, a given part or limb does not exist, one limb would be two parts,
+        or a given limb does not hang where its part does.
     """
     said = dict(given or {})
     if odd := sorted(set(said) - set(PARTS)):
@@ -89,7 +91,12 @@ def find_figure(skeleton: Skeleton, given: Mapping[str, str] | None = None) -> F
         )
     if "head" not in {**parts, **said}:
         parts |= _head_of_spine(skeleton, parts)
-    return _joined(skeleton.parents, parts, source)
+    if said:
+        check_given(skeleton, parts, said)
+    figure = _joined(skeleton.parents, parts, source)
+    if said:
+        check_trunk(skeleton, figure.pelvis, parts, said)
+    return figure
 
 
 def rest_places(skeleton: Skeleton) -> Array:

@@ -11,6 +11,7 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.errors import UnreadableFile
+from kinesphere.io.damage import damage_in_words
 from kinesphere.io.registry import read_bytes
 
 _MAGIC, _JSON, _BIN = b"glTF", 0x4E4F534A, 0x004E4942
@@ -97,7 +98,8 @@ def parse_gltf(path: Path) -> GltfFile:
     try:
         document = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise UnreadableFile(f"{path}: its JSON is damaged ({error})") from None
+        why = f"{error}" if isinstance(error, json.JSONDecodeError) else damage_in_words(error)
+        raise UnreadableFile(f"{path}: its JSON is damaged: {why}") from None
     asset = document.get("asset") if isinstance(document, dict) else None
     version = asset.get("version") if isinstance(asset, dict) else None
     if not isinstance(version, str) or not version.startswith("2"):

@@ -86,10 +86,17 @@ def write(obj: Any, path: str | Path) -> None:
         if candidate.is_named_by(path):
             function_named(candidate.writers[kind])(obj, path)
             return
+    raise no_format(path, kind)
+
+
+def no_format(path: Path, kind: str, *others: str) -> UnknownFormat:
+    """Return the error that no format of a container, or of what can be made of it, is named so."""
     suffix = path.suffix.lower() if not path.is_dir() else ""
-    possible = ", ".join(f"{f.suffixes[0] or 'a folder'} ({f.name})" for f in able)
+    able = [f for f in _formats if {kind, *others} & set(f.writers)]
+    named = (f"{', '.join(s or 'a folder' for s in f.suffixes)} ({f.name})" for f in able)
     shown = f"suffix {suffix!r}" if suffix else "no suffix"
-    raise UnknownFormat(f"{path}: {shown} names no format that holds a {kind}; known: {possible}")
+    known = ", ".join(named)
+    return UnknownFormat(f"{path}: {shown} names no format that holds a {kind}; known: {known}")
 
 
 def read_bytes(path: Path, limit: int | None = None, stop: bytes = b"") -> bytes:

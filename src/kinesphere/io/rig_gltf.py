@@ -17,6 +17,7 @@ from kinesphere.io.atomic import replacing
 from kinesphere.io.bones import Bone, skeleton_of_bones
 from kinesphere.io.bvh import BVH_FROM_BODY
 from kinesphere.io.bvh_hierarchy import MOST_JOINTS
+from kinesphere.io.damage import Damage, damage_in_words
 from kinesphere.io.gltf_file import external_files, parse_gltf
 
 
@@ -104,7 +105,7 @@ def rig_joints(document: dict[str, Any], path: Path) -> RigJoints:
         return _found_joints(document, path)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
         raise UnreadableFile(
-            f"{path}: its nodes or skins are damaged ({type(error).__name__}: {error})"
+            f"{path}: its nodes or skins are damaged: {damage_in_words(error)}"
         ) from None
 
 
@@ -180,7 +181,10 @@ def node_matrix(node: dict[str, Any]) -> Array:
     if "matrix" in node:
         return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
     matrix = np.eye(4)
-    turn = Rotation.from_quat(node.get("rotation", (0.0, 0.0, 0.0, 1.0))).as_matrix()
+    rotation = np.array(node.get("rotation", (0.0, 0.0, 0.0, 1.0)), dtype=np.float64)
+    if not np.linalg.norm(rotation) > 0:
+        raise Damage("a node's rotation is 0, 0, 0, 0, which is none")
+    turn = Rotation.from_quat(rotation).as_matrix()
     matrix[:3, :3] = turn * np.array(node.get("scale", (1.0, 1.0, 1.0)), dtype=np.float64)
     matrix[:3, 3] = node.get("translation", (0.0, 0.0, 0.0))
     return matrix

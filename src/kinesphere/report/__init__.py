@@ -9,6 +9,7 @@ from kinesphere.report.page import report_html as report_html
 from kinesphere.report.tables import JointRow as JointRow
 from kinesphere.report.tables import joint_rows as joint_rows
 from kinesphere.report.tables import rms as rms
+from kinesphere.report.wording import counted as counted
 from kinesphere.report.wording import finding_in_words as finding_in_words
 from kinesphere.report.wording import number_in_words as number_in_words
 from kinesphere.report.wording import unique as unique

@@ -13,7 +13,7 @@ from kinesphere.data.sticks import side_of
 from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.plots import Curve, curves, dots
 from kinesphere.report.tables import Tile, in_words
-from kinesphere.report.wording import number_in_words
+from kinesphere.report.wording import counted, number_in_words
 
 KINDS = {
     "bend": "bend: the angle between two limbs",
@@ -101,7 +101,7 @@ def _tiles(found: Comparison) -> list[Tile]:
         ),
         Tile(
             "In common",
-            f"{len(found.times):,} frames",
+            counted(len(found.times), "frame"),
             f"{offset.overlap:.2f} s at {found.rate:g} Hz, {len(found.joints)} joints",
         ),
         Tile(

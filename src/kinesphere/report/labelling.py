@@ -15,7 +15,7 @@ from kinesphere.quality import orient
 from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.moments import runs
 from kinesphere.report.notices import notices
-from kinesphere.report.wording import number_in_words
+from kinesphere.report.wording import counted, number_in_words
 
 STILLS = 3
 """Instants drawn, spread over the recording."""
@@ -78,7 +78,7 @@ def labelling_html(recording: Recording, model: TopologicalModel, title: str = "
         (
             "Recording",
             f"{recording.n_frames / recording.rate:.1f} s",
-            f"{recording.n_frames:,} frames at {recording.rate:g} Hz",
+            f"{counted(recording.n_frames, 'frame')} at {recording.rate:g} Hz",
         ),
     ]
     page = environment().from_string(asset("labelling.html.j2"))

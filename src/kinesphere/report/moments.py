@@ -8,6 +8,7 @@ import numpy as np
 
 from kinesphere.data import Mask, PoseFlag, Solution
 from kinesphere.report.improbable import improbable_poses
+from kinesphere.report.wording import counted
 
 MOST = 60
 """Moments listed; the time line shows all."""
@@ -64,16 +65,12 @@ def moment_rows(solution: Solution) -> tuple[list[MomentRow], int]:
         MomentRow(
             f"{moment.first / rate:.2f} s",
             moment.what,
-            "" if moment.kind == "event" else _frames(moment.end - moment.first),
+            "" if moment.kind == "event" else counted(moment.end - moment.first, "frame"),
             moment.kind,
         )
         for moment in listed
     ]
     return rows, len(found) - len(listed)
-
-
-def _frames(n: int) -> str:
-    return "1 frame" if n == 1 else f"{n:,} frames"
 
 
 def runs(mask: Mask) -> list[list[int]]:

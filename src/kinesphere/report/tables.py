@@ -8,7 +8,7 @@ import numpy as np
 from kinesphere.data import Array, Joint, JointFlag, Json, PoseFlag, Solution, Step
 from kinesphere.data.sticks import side_of
 from kinesphere.report.notices import Notice, names_of, notices
-from kinesphere.report.wording import finding_in_words, number_in_words
+from kinesphere.report.wording import counted, finding_in_words, number_in_words
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def tiles(solution: Solution) -> list[Tile]:
         Tile(
             "Recording",
             number_in_words(motion.n_frames / motion.rate, "s"),
-            f"{motion.n_frames:,} frames at {motion.rate:g} Hz",
+            f"{counted(motion.n_frames, 'frame')} at {motion.rate:g} Hz",
         ),
         Tile(
             "Skeleton",

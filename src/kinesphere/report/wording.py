@@ -21,6 +21,11 @@ _LEAST = 0.001
 """Whatever the unit, a smaller number is called smaller than this."""
 
 
+def counted(n: int, noun: str) -> str:
+    """Return how many there are: ``1 frame``, ``1,854 frames``."""
+    return f"{n:,} {noun}" if n == 1 else f"{n:,} {noun}s"
+
+
 def finding_in_words(name: str, value: Json, listed: int = _LISTED) -> tuple[str, str]:
     """Return what a person reads for one finding: its name and its value with the unit.
 

@@ -90,6 +90,7 @@ class Panel:
         names = (NOTHING, ROOT, *skeleton.joint_names)
         self.joint = gui.add_dropdown("Joint", names, hint="Or click a bone")
         self.scope = gui.add_dropdown("Change", (THIS_FRAME, RANGE, ALL))
+        # what is typed stays as it is, for it may be half a number; it counts within the limits
         self.start = gui.add_number("from", first, min=first, max=last, step=1, visible=False)
         self.end = gui.add_number("to", last, min=first, max=last, step=1, visible=False)
         self.blend = gui.add_number(
@@ -126,6 +127,11 @@ class Panel:
                 slider.min, slider.max = -reach, reach
                 slider.step, slider.precision = (0.005, 3) if reach == SHIFT else (0.5, 1)
         return axes
+
+    def typed(self, field: Any) -> float:
+        """Return the number in a field or slider, within its limits: a page takes what is typed."""
+        value = float(field.value)
+        return float(np.clip(0.0 if np.isnan(value) else value, field.min, field.max))
 
     def offer_range(self, scope: str) -> None:
         """Show the fields that a scope needs."""

@@ -117,9 +117,9 @@ class Posing:
         if panel.scope.value == ALL:
             frames = None
         elif panel.scope.value == RANGE:
-            first, last = sorted((int(panel.start.value), int(panel.end.value)))
+            first, last = sorted(int(panel.typed(field)) for field in (panel.start, panel.end))
             frames = first, last
-        blend = 0.0 if frames is None else float(panel.blend.value)
+        blend = 0.0 if frames is None else panel.typed(panel.blend)
         return Target(self._name(), self.axes[k], Scope(frames, blend))
 
     def _take(self, session: Session) -> None:
@@ -177,7 +177,7 @@ class Posing:
             on_press(command, call)
 
     def _changer(self, k: int) -> Callable[[float], None]:
-        return lambda value: self.change(k, float(value))
+        return lambda _: self.change(k, self._panel.typed(self._panel.sliders[k]))
 
     def _set_scope(self, scope: str) -> None:
         self._panel.offer_range(scope)

@@ -142,7 +142,7 @@ class Viewer:
 
     def _connect(self, server: "viser.ViserServer") -> None:
         panel = self.panel
-        on_change(panel.frame, lambda value: self.seek(int(value) - self.first))
+        on_change(panel.frame, lambda _: self.seek(int(panel.typed(panel.frame)) - self.first))
         on_change(panel.speed, self._set_speed)
         on_press(panel.play, self.play)
         for name, box in panel.kinds.items():

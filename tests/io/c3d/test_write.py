@@ -14,6 +14,7 @@ from kinesphere.data import Analog, Event, Output, Recording
 from kinesphere.errors import BadRecording
 from kinesphere.io.c3d import read_c3d, write_c3d
 from kinesphere.io.c3d.parameters import Group, Section, words
+from kinesphere.io.c3d.points import points_of
 from kinesphere.io.c3d.processor import INTEL
 from kinesphere.io.c3d.section import bytes_from_section, section_from_bytes
 
@@ -462,3 +463,40 @@ def test_what_the_format_has_no_room_for(recording, tmp_path, different, message
 def test_an_empty_recording_is_refused(tmp_path, shape, labels, message):
     with pytest.raises(BadRecording, match=message):
         write_c3d(Recording(np.empty(shape), labels, 100.0), tmp_path / "none.c3d")
+
+
+def test_what_is_new_keeps_its_names_where_readers_know_255(recording, rng, tmp_path):
+    """Beyond 255 points the vendor's outputs go last: their names go to LABELS2, ours do not."""
+    n = recording.n_frames
+
+    def outputs(names, kind):
+        return tuple(Output(name, kind, rng.normal(size=(n, 3)), "deg") for name in names)
+
+    vendor = [f"Vendor{i}" for i in range(248)]
+    first = replace(recording, outputs=outputs(vendor, "angle"))
+    write_c3d(first, tmp_path / "first.c3d")
+    had = read_c3d(tmp_path / "first.c3d")
+    more = replace(
+        had,
+        markers=np.concatenate([had.markers, had.markers[:, :2]], axis=1),
+        labels=(*had.labels, "knee", "hip"),
+        residuals=None if had.residuals is None else np.hstack([had.residuals] * 2)[:, :6],
+        outputs=(*had.outputs, *outputs(["knee_angles", "hip_angles"], "angle")),
+    )
+    write_c3d(more, tmp_path / "more.c3d")
+    ours = ["A", "B", "C", "D", "knee", "hip", "knee_angles", "hip_angles"]
+    other = ezc3d.c3d(str(tmp_path / "more.c3d"))
+    points = other["parameters"]["POINT"]
+    assert points["LABELS"]["value"] == [*ours, *vendor[:247]]
+    assert points["LABELS2"]["value"] == vendor[247:]
+    assert other["data"]["points"].shape[1] == 256
+    again = read_c3d(tmp_path / "more.c3d")
+    assert list(again.labels) == ours[:6]
+    assert_allclose(again.markers, more.markers, rtol=SINGLE, atol=1e-9, equal_nan=True)
+    values = {output.label: output.values for output in again.outputs}
+    assert list(values) == [*ours[6:], *vendor]
+    for output in more.outputs:
+        assert_allclose(values[output.label], output.values, rtol=SINGLE)
+    # nothing is new in this one: its order stays
+    assert [p.label for p in points_of(again, source(again))] == [*ours, *vendor]
+    assert [p.label for p in points_of(had, source(had))] == [*ours[:4], *vendor]

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array, Mask, Recording
 from kinesphere.io.c3d.frames import as_doubles, unseen
+from kinesphere.io.c3d.parameters import MOST
 from kinesphere.io.c3d.source import Source
 
 
@@ -28,7 +29,9 @@ def points_of(recording: Recording, source: Source | None) -> tuple[Point, ...]:
     """Return the points in the order of the source, those it does not know at the end.
 
     A point is known by its name; a marker that was given another name, by its place among the
-    markers as long as none has come or gone.
+    markers as long as none has come or gone. Where there are more points than one POINT:LABELS
+    names, what is new comes right after the source's markers and the source's outputs come last:
+    many readers know no LABELS2, and to them the last points have no names.
     """
     origins: dict[str, int] = {}
     if source is not None:
@@ -45,7 +48,11 @@ def points_of(recording: Recording, source: Source | None) -> tuple[Point, ...]:
         Point(o.label, None, i, origins.get(o.label)) for i, o in enumerate(recording.outputs)
     ]
     last = len(origins)
-    return tuple(sorted(points, key=lambda p: last if p.origin is None else p.origin))
+    points.sort(key=lambda p: last if p.origin is None else p.origin)
+    if len(points) > MOST and any(p.origin is None for p in points):
+        points.sort(key=lambda p: p.output is not None and p.origin is not None)
+        points.sort(key=lambda p: p.output is not None)
+    return tuple(points)
 
 
 def coordinates(recording: Recording, points: tuple[Point, ...], metres: float) -> Array:

@@ -7,6 +7,7 @@ import numpy as np
 
 from kinesphere.data import Array, Skeleton, Step, Surface
 from kinesphere.errors import BadSurface, UnreadableFile
+from kinesphere.io.damage import damage_in_words
 from kinesphere.io.gltf_file import GltfFile, parse_gltf
 from kinesphere.io.meshes.cleaning import cleaned
 from kinesphere.io.meshes.gltf_arrays import GltfArrays
@@ -56,9 +57,7 @@ def read_gltf(path: str | Path) -> Surface | Skeleton:
     try:
         return _surface(file, path)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
-        raise UnreadableFile(
-            f"{path}: its meshes are damaged ({type(error).__name__}: {error})"
-        ) from None
+        raise UnreadableFile(f"{path}: its meshes are damaged: {damage_in_words(error)}") from None
 
 
 def _surface(file: GltfFile, path: Path) -> Surface:

@@ -6,6 +6,7 @@ import numpy as np
 
 from kinesphere.data import Step, Surface
 from kinesphere.errors import UnreadableFile
+from kinesphere.io.damage import damage_in_words
 from kinesphere.io.meshes.cleaning import cleaned
 from kinesphere.io.meshes.marks import is_ply, is_stl
 from kinesphere.io.registry import read_bytes
@@ -39,8 +40,10 @@ def read_mesh(path: str | Path) -> Surface:
         vertices = np.asarray(mesh.vertices, dtype=np.float64).reshape(-1, 3)
         faces = np.asarray(mesh.faces, dtype=np.intp).reshape(-1, 3)
     except Exception as error:  # a reader of files from anywhere fails in any way
-        reason = f"{type(error).__name__}: {error}".splitlines()[0]
-        raise UnreadableFile(f"{path} is a damaged {kind.upper()} file ({reason:.120})") from None
+        why = damage_in_words(error)
+        if kind == "obj" and isinstance(error, IndexError):
+            why = "a face names a vertex that is not there"
+        raise UnreadableFile(f"{path} is a damaged {kind.upper()} file: {why}") from None
     kept, faces = cleaned(vertices, faces, str(path))
     step = Step("read", {"format": kind, "file": path.name}, {"n_triangles": len(faces)})
     return Surface.without_limbs(vertices[kept], faces, (step,))
