@@ -115,9 +115,9 @@ def two_axis_angles(
     )
     if settings.branch == "viterbi":
         cost = settings.twist_cost
-        if deliberate:  # the mean square: it chooses between whole paths and never buys a leap
-            cost /= max(1, int(np.isfinite(sines).sum()))
-        branch = smoothest_branches(solutions, twist_known, cost)
+        if deliberate:  # mean squares: they choose between whole paths and never buy a leap
+            cost /= 3 * max(1, int(np.isfinite(sines).sum()))
+        branch = smoothest_branches(solutions, twist_known, cost, deliberate)
     elif settings.branch == "smallest-twist":
         smaller = np.abs(solutions[:, 1, 2]) < np.abs(solutions[:, 0, 2])
         branch = (smaller & twist_known).astype(np.int8)

@@ -60,9 +60,7 @@ def told_of(name: str, skeleton: Skeleton) -> Mapping[str, Json]:
     return {}
 
 
-def misfit(
-    view: JointView, fit: JointFit, solved: JointAngles, settings: ParameterizationSettings
-) -> str:
+def misfit(view: JointView, solved: JointAngles, settings: ParameterizationSettings) -> str:
     """Return how reused axes miss the limb, a clause; empty where they do not.
 
     A limb may leave the reach of any axes a little (a hinge's cone above all); so where it does

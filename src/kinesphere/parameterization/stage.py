@@ -112,7 +112,7 @@ def parameterize(
         fit = reused_fit(joint.name, reuse) or fit_axes(view, settings)
         solved = solve_joint(view, fit.axes, fit.rest, settings)
         if fit.source == "reused":
-            fit = replace(fit, misfit=misfit(view, fit, solved, settings))
+            fit = replace(fit, misfit=misfit(view, solved, settings))
         rebuilt = joint_rotations(fit.axes, fit.rest, limb.long_axis, solved.angles, solved.twists)
         mid_point = lever(joint.centre_in_child, limb.length, limb.long_axis)
         angles[:, j], twists[:, j] = solved.angles, solved.twists
