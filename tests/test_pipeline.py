@@ -186,6 +186,8 @@ def test_what_has_no_front_faces_an_axis_of_the_world_and_says_so():
     solution = solve(performance.recording, "none")
     assert len(solution.skeleton.limbs) == len(HAND.limbs)
     assert any("no front of its own" in text for text in solution.warnings)
+    step = next(step for step in solution.history if step.name == "normalization")
+    assert step.findings["facing"]["decided_by"].startswith("assumed (")  # not by any user
     with pytest.raises(AmbiguousFacing):
         solve(performance.recording, "none", facing="feet")
 

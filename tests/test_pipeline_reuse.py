@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
+from kinesphere.data import Step
 from kinesphere.pipeline import solve
 from kinesphere.pipeline.reuse import skeletons_of, with_best_axes
 from kinesphere.synthetic import make_performance
@@ -70,6 +71,22 @@ def test_the_worst_axis_of_a_joint_counts_and_none_that_is_unknown(performance):
     assert with_best_axes(plain, [unknown, uneven])[1] == {"left_hip": 1}
     assert with_best_axes(plain, [unknown])[1] == {"left_hip": 0}
     assert with_best_axes(plain, [even, even])[1] == {"left_hip": 0}
+
+
+def test_what_was_found_of_the_axes_comes_along(performance):
+    plain = performance.skeleton
+
+    def told(doubt):
+        joints = {name: {"doubts": [doubt]} for name in plain.joint_names}
+        return Step("parameterization", findings={"joints": joints})
+
+    first = replace(known(plain, left_knee=3.0, left_hip=2.0), history=(told("first"),))
+    second = replace(known(plain, left_knee=1.0), history=(told("second"), Step("editing")))
+    bearing, _ = with_best_axes(plain, [first, second])
+    assert bearing.history[-1].findings["joints"] == {
+        "left_knee": {"doubts": ["second"]},
+        "left_hip": {"doubts": ["first"]},
+    }
 
 
 def test_other_bodies_have_other_joints(performance):

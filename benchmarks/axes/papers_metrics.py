@@ -192,7 +192,8 @@ sections 2, 3 and 6.
 of the one rotation that is left. *Tracked* is the median distance of the limb's mid point, as its
 own markers put it, from where its parent and the parameters put it: it holds what the joint comes
 apart by, which no axes can mend, and is likelier what the paper's 1.3 mm were. A joint of three
-axes is in neither table: it reaches every pose.
+axes is in neither table: it leaves no twist over, and reaches every pose unless its axes are
+oblique; poses beyond count as out of reach, and where they are many no third axis is taken.
 
 **Joints of two axes**, means over joints and frames
 """

@@ -28,15 +28,15 @@ from kinesphere.parameterization import AxesSettings, ParameterizationSettings, 
 
 SEEDS = 30
 FIRST_SEED = 5000
-TWIST = 40.0  # deg to both sides
+TWIST = (40.0, 130.0)  # deg to both sides, in turn; what goes far must not flip other angles
 OFF_LIMB = 10.0  # deg, at most, between the limb's own line and what it turns about
 SECONDS = 90.0
 MADE = {
-    "three axes": "swings about both axes one after another, then turns about the third, ±40°",
+    "three axes": "swings about both axes in turn, then turns about the third, ±40° or ±130°",
     "two axes": "swings about both axes, stands a while, and does not turn about itself",
     "two axes, twisting": "the same, and turns about itself by ±15° while it swings",
     "one axis": "swings about one axis only",
-    "one axis and a twist": "swings about one axis, then turns about another near itself, ±40°",
+    "one axis and a twist": "swings about one, then turns about another near itself, ±40° or ±130°",
 }
 TURNING = ("three axes", "one axis and a twist")
 NAMES = tuple(NOISES)
@@ -62,7 +62,7 @@ def make(rng: np.random.Generator, kind: str, noise: str) -> tuple[TrueJoint, Ar
         if axis == 2 and kind not in TURNING:
             continue
         during = (t >= start) & (t < start + 2)
-        reach = np.deg2rad((*AMPLITUDES, TWIST)[axis]) * rng.uniform(1 - JITTER, 1 + JITTER)
+        reach = np.deg2rad((*AMPLITUDES, TWIST[i % 2])[axis]) * rng.uniform(1 - JITTER, 1 + JITTER)
         course = np.sin(np.pi * (t[during] - start))
         angles[during, axis] += reach * course
         if kind == "two axes, twisting":

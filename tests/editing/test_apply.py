@@ -141,6 +141,20 @@ def test_what_is_not_there_is_named(solution, told, says):
         apply_edits(solution, [edit(**told)])
 
 
+def test_three_axes_leave_no_twist_to_edit(solution):
+    parameters = solution.parameters
+    joints = tuple(
+        replace(joint, axes=np.eye(3), axes_uncertainty=None) if joint.name == "neck" else joint
+        for joint in parameters.skeleton.joints
+    )
+    three = replace(
+        solution,
+        parameters=replace(parameters, skeleton=replace(parameters.skeleton, joints=joints)),
+    )
+    with pytest.raises(BadSetting, match="neck has three axes and no twist; axis 1 is"):
+        apply_edits(three, [edit("neck", axis="twist", add_deg=1.0)])
+
+
 def test_a_blend_begins_and_ends_without_a_jerk():
     blended = edit(add_deg=1.0, seconds=(2.0, 3.0), blend_s=1.0)
     weights = edit_weights(blended, 5001, 1000.0, 1)

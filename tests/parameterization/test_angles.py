@@ -176,3 +176,26 @@ def test_a_limb_along_the_proximal_axis_has_angles_all_the_same():
         solved = solve(turn.as_matrix()[None], axes, np.eye(3), np.array([0.0, 0.0, 1.0]))
         assert np.isfinite(solved.angles[0, :2]).all()
         assert solved.sines[0] < 1e-6
+
+
+def test_a_limb_spun_about_itself_keeps_its_branch_where_angles_run_on(rng):
+    axes, rest, long_axis = draw_joint(rng, 70)
+    n = 2000
+    truth = smooth(rng, n, [50, 60, 1])
+    truth[:, 2] += 16 * np.pi * np.clip(np.linspace(-0.2, 1.2, n), 0, 1)
+    rotations = joint_rotations(axes, rest, long_axis, truth[:, :2], truth[:, 2])
+    known = np.ones(n, dtype=bool)
+    solved = solve_angles(
+        rotations, axes, rest, long_axis, known, AngleSettings(unwrap=True), TwistSettings()
+    )
+    assert_allclose(solved.angles[:, :2], truth[:, :2], atol=EXACT)
+    assert_allclose(unwrapped(solved.twists), truth[:, 2], atol=1e-8)
+
+
+@pytest.mark.parametrize("branch", ["viterbi", "smallest-twist"])
+def test_the_size_of_a_turn_about_the_first_of_three_axes_does_not_matter(rng, branch):
+    axes, rest, long_axis = draw_joint(rng, 90)
+    axes = np.array([rest @ long_axis, *axes])
+    truth = smooth(rng, 400, [170, 60, 60])
+    rotations = joint_rotations(axes, rest, long_axis, truth, np.zeros(400))
+    assert_allclose(solve(rotations, axes, rest, long_axis, branch).angles, truth, atol=EXACT)

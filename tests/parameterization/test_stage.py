@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.spatial.transform import Rotation
 
 from kinesphere.data import JointFlag, Motion, PoseFlag, Skeleton, motion_from_parameters
 from kinesphere.errors import BadSetting
@@ -141,6 +142,15 @@ def test_a_window_of_a_joint_that_is_not_there_is_refused(performance):
         parameterize(
             performance.motion, ParameterizationSettings(axes=AxesSettings(windows="tail=0:9"))
         )
+
+
+@pytest.mark.parametrize("name", ["knee", "left_knee"])
+def test_a_window_without_a_frame_says_whose_it_is(performance, name):
+    settings = ParameterizationSettings(axes=AxesSettings(windows=f"{name}=50:99"))
+    with pytest.raises(BadSetting, match=rf"^axes\.windows gives {name} 50–99 s; the recording"):
+        parameterize(performance.motion, settings)
+    with pytest.raises(BadSetting, match=r"^calibration is 50–99 s; the recording"):
+        parameterize(performance.motion, calibration=(50.0, 99.0))
 
 
 def test_frames_that_were_filled_wrongly_tell_no_axis(performance, rng):
@@ -432,6 +442,41 @@ def test_axes_that_were_only_assumed_are_not_reused(performance):
     assert solved.skeleton.joint("left_knee").axes_source == "movement"
     assert solved.skeleton.joint("right_knee").axes_source == "reused"
     assert any("measured no axes of left_knee" in w for w in solved.history[-1].warnings)
+
+
+def test_doubts_about_reused_axes_stay_doubts(performance, solved):
+    step = solved.history[-1]
+    told = {name: dict(found) for name, found in step.findings["joints"].items()}
+    told["left_knee"]["doubts"] = ["the moon was full"]
+    doubted = replace(step, findings={"joints": told})
+    reuse = replace(solved.skeleton, history=(*solved.history[:-1], doubted))
+    again = parameterize(performance.motion, reuse=reuse)
+    found = findings(again, "left_knee")
+    assert found["doubts"] == ["the moon was full"]
+    assert found["halves_disagreement_deg"] == told["left_knee"]["halves_disagreement_deg"]
+    assert "phases_s" not in found  # those were seconds of another recording
+    assert any(
+        "doubtful where they come from: " in w and "left_knee (the moon was full)" in w
+        for w in again.history[-1].warnings
+    )
+    assert not any("do not fit" in w for w in again.history[-1].warnings)
+    thrice = parameterize(performance.motion, reuse=again.skeleton)
+    assert findings(thrice, "left_knee")["doubts"] == ["the moon was full"]
+
+
+def test_reused_axes_that_do_not_fit_are_named(performance):
+    wrong = Rotation.from_rotvec([0.6, 0.0, 0.0]).as_matrix()
+    joints = tuple(
+        replace(joint, rest=wrong @ joint.rest, axes=joint.axes @ wrong)
+        if joint.name in ("left_knee", "left_hip")
+        else joint
+        for joint in performance.skeleton.joints
+    )
+    reuse = Skeleton(performance.skeleton.limbs, joints)
+    told = parameterize(performance.motion, reuse=reuse).history[-1].warnings
+    (misfit,) = (w for w in told if "do not fit this recording" in w)
+    assert "left_knee (out of their reach in " in misfit
+    assert "right_knee" not in misfit
 
 
 def test_what_does_not_apply_is_said(performance):

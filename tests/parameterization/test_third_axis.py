@@ -1,5 +1,7 @@
 """A third axis: where a limb turns about itself on purpose, and nowhere else."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -13,7 +15,7 @@ from kinesphere.parameterization.axes.twist_phases import TwistAxis, find_twist_
 from kinesphere.parameterization.confidence import TISSUE
 from kinesphere.parameterization.joint import solve_joint
 from kinesphere.parameterization.settings import AxesSettings, ParameterizationSettings
-from kinesphere.parameterization.third_axis import fit_axes
+from kinesphere.parameterization.third_axis import _serves, fit_axes
 from kinesphere.parameterization.view import view_joint
 
 RATE = 25.0
@@ -193,6 +195,105 @@ def test_turns_to_one_side_do_not_move_the_zero(rng):
     fit = fit_axes(seen, DEFAULTS)
     assert len(fit.axes) == 3
     assert np.rad2deg(rotation_angle(fit.rest)) < 0.5  # it rested there, aligned with its parent
+
+
+@pytest.mark.parametrize("far", [-160, 130, 160])
+def test_far_turns_leave_the_other_angles_where_they_are(rng, far):
+    slow = np.sin(np.linspace(0, np.pi, 75)) ** 2
+    strokes = [(100, 0, 0, 0)] * 3 + [(0, 0, far, 90)] * 4  # bends, then pronates at a right angle
+    seen = view(move(rng, strokes, off_limb(6.0), course=slow), "left_elbow")
+    fit = fit_axes(seen, DEFAULTS)
+    angles = np.rad2deg(solve_joint(seen, fit.axes, fit.rest, DEFAULTS).angles)
+    assert angles.shape[1] == len(fit.axes) == 3
+    assert np.abs(np.diff(angles, axis=0)).max() < 20
+    assert np.abs(angles[:, 1]).max() < 5
+    assert -5 < angles[:, 2].min() < angles[:, 2].max() < 105
+    assert np.abs(angles[:, 0]).max() == pytest.approx(abs(far), abs=2)
+
+
+def test_the_way_through_a_singular_pose_and_back_takes_no_leap(rng):
+    n = 3000
+    t = np.linspace(0, 1, n)
+    true = np.deg2rad(
+        np.column_stack(
+            [30 * np.sin(40 * t), 130 * np.sin(np.pi * t) ** 2, 20 * np.cos(30 * t)],
+        )
+    )
+    axes = np.array([LIMB, ABDUCTION, FLEXION])
+    rotations = joint_rotations(axes, np.eye(3), LIMB, true, np.zeros(n))
+    solved = solve_joint(view(rotations), axes, np.eye(3), DEFAULTS)
+    assert_allclose(solved.angles, true, atol=1e-6)
+
+
+def along_the_proximal_axis(rng, elevated):
+    """Return rotations of two axes alone: swings, then turns about axis 2 by a raised limb."""
+    t = np.arange(80 * 25) / 25
+    angles = SWAY * rng.normal(size=(len(t), 2))
+    for axis, start, reach in [
+        *((0, 2 + 4 * k, 45) for k in range(4)),
+        *((1, 18 + 4 * k, 40) for k in range(4)),
+        *((1, 42 + 5 * k, 40) for k in range(4)),
+    ]:
+        during = (t >= start) & (t < start + 2.5)
+        angles[during, axis] += reach * np.sin(2 * np.pi * (t[during] - start) / 2.5)
+    angles[:, 0] += elevated * np.clip((t - 36) / 3, 0, 1) * np.clip((72 - t) / 3, 0, 1)
+    first, second = np.deg2rad(angles.T)
+    return rotation_exp(second[:, None] * np.eye(3)[1]) @ rotation_exp(
+        first[:, None] * np.eye(3)[0]
+    )
+
+
+@pytest.mark.parametrize("elevated", [80, 85])
+@pytest.mark.parametrize("noise", [0.0, 1.0, 3.0])
+def test_a_limb_along_its_proximal_axis_turns_about_that(rng, skin, elevated, noise):
+    rotations = along_the_proximal_axis(rng, elevated)
+    rotations = rotation_exp(skin(rng, len(rotations), RATE, noise)) @ rotations
+    seen = view(rotations, "joint_04", np.array([0.0, 0, -1]))
+    assert find_twist_axis(seen.samples, DEFAULTS) is not None
+    assert len(fit_axes(seen, DEFAULTS).axes) == 2
+
+
+def test_turns_that_the_other_axes_explain_do_not_count_among_others(rng):
+    raised = rotation_exp(np.deg2rad(88.0) * FLEXION) @ ABDUCTION  # where the distal axis is, then
+    assert abs(raised @ LIMB) > 0.99
+    rotations = move(rng, [*THREE, *[(0, 0, 35, 88)] * 3], off_limb(4.0))
+    fit = fit_axes(view(rotations, "joint_04"), DEFAULTS)
+    assert len(fit.findings["twist_phases_s"]) == 3
+    assert off(fit.rest.T @ fit.axes[0], off_limb(4.0)) < CLOSE
+    hip = fit_axes(view(rotations), DEFAULTS)  # a name says that flexion is the proximal axis
+    assert len(hip.findings["twist_phases_s"]) == 6
+
+
+def test_axes_out_of_reach_or_mostly_singular_are_no_three(rng):
+    seen = view(move(rng, THREE, off_limb(8.0)))
+    fit = fit_axes(seen, DEFAULTS)
+    assert _serves(seen, fit, DEFAULTS)
+    oblique = rotation_exp(np.deg2rad(60.0) * ABDUCTION) @ FLEXION
+    third = rotation_exp(np.deg2rad(25.0) * FLEXION) @ oblique
+    narrow = replace(fit, axes=np.array([third, oblique, FLEXION]))
+    assert not _serves(seen, narrow, DEFAULTS)
+    gimbal = replace(fit, axes=np.array([FLEXION, ABDUCTION, FLEXION]))
+    assert not _serves(seen, gimbal, DEFAULTS)
+
+
+def test_what_nothing_tells_about_the_limb_is_no_angle(rng):
+    rotations = move(rng, THREE, off_limb(8.0))
+    unknown = np.arange(len(rotations)) % 3 == 0
+    spun = rotations.copy()
+    spun[unknown] = rotations[unknown] @ rotation_exp(
+        rng.uniform(-3, 3, unknown.sum())[:, None] * LIMB
+    )
+    told = view(rotations)
+    fit = fit_axes(told, DEFAULTS)
+    solved = solve_joint(view(spun, known=~unknown), fit.axes, fit.rest, DEFAULTS)
+    assert_allclose(np.isnan(solved.angles[:, 0]), unknown)
+    assert_allclose(np.isnan(solved.twists), unknown)
+    assert np.isfinite(solved.angles[:, 1:]).all()
+    rebuilt = joint_rotations(fit.axes, fit.rest, LIMB, solved.angles, solved.twists)
+    reach = solved.excess < 1e-9
+    assert reach.mean() > 0.9
+    assert_allclose((rebuilt @ LIMB)[reach], (rotations @ LIMB)[reach], atol=EXACT)
+    assert_allclose(rebuilt[~unknown], rotations[~unknown], atol=EXACT)
 
 
 def test_two_axes_that_are_one_stay_two(rng):

@@ -138,7 +138,8 @@ def _normalization(found: dict[str, Any], _: dict[str, Any]) -> str:
             f"{n} {'frame' if n == 1 else 'frames'} averaged"
         )
     if isinstance(found.get("facing"), dict):
-        parts.append(f"facing by {found['facing'].get('decided_by')}")
+        decided = str(found["facing"].get("decided_by"))
+        parts.append(f"facing {'' if decided.startswith('assumed') else 'by '}{decided}")
     if found.get("good_default_position") is False:
         parts.append("not a good one (see below)")
     return "; ".join(parts)

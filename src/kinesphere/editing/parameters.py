@@ -84,12 +84,17 @@ def _column(parameters: Parameters, edit: Edit, angles: Array, twists: Array) ->
             f"there is no joint {edit.joint!r}; the joints are {', '.join(names)}, and {ROOT!r}"
         )
     j = names.index(edit.joint)
-    if edit.axis == "twist":
-        return twists[:, j]
     n_axes = parameters.skeleton.joints[j].n_axes
+    if edit.axis == "twist":
+        if n_axes == 3:
+            raise BadSetting(
+                f"{edit.joint} has three axes and no twist; axis 1 is what it turns about itself by"
+            )
+        return twists[:, j]
     if not isinstance(edit.axis, int) or edit.axis > n_axes:
         there = ", ".join(str(k + 1) for k in range(n_axes))
-        raise BadSetting(f"{edit.joint} has no axis {edit.axis}; it has {there} and 'twist'")
+        twist = "" if n_axes == 3 else " and 'twist'"
+        raise BadSetting(f"{edit.joint} has no axis {edit.axis}; it has {there}{twist}")
     return angles[:, j, edit.axis - 1]
 
 

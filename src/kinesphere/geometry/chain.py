@@ -27,19 +27,32 @@ def joint_rotations(
     long_axis : (3,)
         Unit vector in the child frame.
     angles : (n_frames, 3) rad
-        Columns beyond ``n_axes`` are ignored.
+        Columns beyond ``n_axes`` are ignored. Of three, the first is about the limb or nearly so;
+        NaN counts as zero there while the others are known.
     twists : (n_frames,) rad
         NaN counts as zero: a twist that nothing tells.
 
     Returns
     -------
     (n_frames, 3, 3)
-        NaN where an angle is NaN.
+        NaN where another angle is NaN.
     """
+    if len(axes) == 3:
+        angles = three_told(angles)
     rotations = rotation_about(rest @ long_axis, np.nan_to_num(twists, nan=0.0)) @ rest
     for axis, angle in zip(axes, angles.T, strict=False):
         rotations = rotation_about(axis, angle) @ rotations
     return rotations
+
+
+def three_told(angles: Array) -> Array:
+    """Return angles of three axes, (n_frames, 3) rad, with zero for a first one nothing tells.
+
+    Frames without the other two stay as they are.
+    """
+    told = np.array(angles)
+    told[np.isnan(told[:, 0]) & np.isfinite(told[:, 1:]).all(axis=1), 0] = 0.0
+    return told
 
 
 def chain_poses(

@@ -6,6 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array, Motion, Output, Recording, Solution
 from kinesphere.data.conventions import ANGLES, LIMBS, POSE, WRITTEN_BY
+from kinesphere.geometry.chain import three_told
 from kinesphere.io.c3d.renew import DESCRIPTIONS, NOTES, OURS
 from kinesphere.io.c3d.source import Source
 
@@ -76,7 +77,8 @@ def _angles(solution: Solution, j: int) -> Array:
     angles[:, n_axes:] = 0.0
     if n_axes < 3:
         angles[:, 2] = np.nan_to_num(parameters.twists[:, j], nan=0.0)
-    return angles
+        return angles
+    return three_told(angles)
 
 
 def recording_of_joints(motion: Motion) -> Recording:

@@ -6,6 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array, Parameters
 from kinesphere.data.conventions import POSE, WRITTEN_BY
+from kinesphere.geometry.chain import three_told
 from kinesphere.geometry.euler import continuous_angles, euler_angles
 from kinesphere.io.atomic import replacing
 from kinesphere.io.holding import held
@@ -30,6 +31,8 @@ def write_mot(parameters: Parameters, path: str | Path) -> None:
     names = ["time", *root_coordinates(skeleton)]
     for j, joint in enumerate(skeleton.joints):
         turns = np.column_stack([parameters.angles[:, j, : joint.n_axes], parameters.twists[:, j]])
+        if joint.n_axes == 3:
+            turns[:, :3] = three_told(turns[:, :3])
         seen = np.isfinite(turns[:, :-1]).all(axis=1)
         turns[seen, -1] = np.nan_to_num(turns[seen, -1], nan=0.0)
         columns.append(np.degrees(held(turns, np.zeros(joint.n_axes + 1))))

@@ -1,6 +1,7 @@
 """Movement filter, movement axes, rest position, angles and twist: poses into parameters."""
 
 from kinesphere.parameterization.angles import unwrapped as unwrapped
+from kinesphere.parameterization.reused import told_of as told_of
 from kinesphere.parameterization.settings import AngleSettings as AngleSettings
 from kinesphere.parameterization.settings import AxesSettings as AxesSettings
 from kinesphere.parameterization.settings import FilterSettings as FilterSettings

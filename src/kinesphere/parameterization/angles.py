@@ -1,6 +1,6 @@
 """Rotation angles about the joint's axes, from rest to every pose (paper section 4.4)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +16,8 @@ class JointAngles:
     """Angles and twist of one joint, and how well they are determined."""
 
     angles: Array
-    """(n_frames, 3) rad in (−π, π]; NaN for an axis the joint does not have."""
+    """(n_frames, 3) rad in (−π, π]; NaN for an axis the joint does not have, and about the first
+    of three where the orientation about the limb is arbitrary."""
     twists: Array
     """(n_frames,) rad in (−π, π]; 0 for a joint of three axes."""
     excess: Array
@@ -54,9 +55,11 @@ def solve_angles(
     if len(axes) == 1:
         solved = one_axis_angles(rotations, axes[0], rest, long_axis)
     elif len(axes) == 2:
-        solved = two_axis_angles(rotations, axes, rest, long_axis, twist_known, settings)
+        solved = two_axis_angles(
+            rotations, axes, rest, long_axis, twist_known, settings, deliberate=settings.unwrap
+        )
     else:
-        return three_axis_angles(rotations, axes, rest, settings)
+        return three_axis_angles(rotations, axes, rest, long_axis, twist_known, settings)
     twists = solved.twists
     if twist.method == "sampled":
         model = np.broadcast_to(rest, rotations.shape)
@@ -92,6 +95,7 @@ def two_axis_angles(
     long_axis: Array,
     twist_known: Mask,
     settings: AngleSettings,
+    deliberate: bool = False,
 ) -> JointAngles:
     """Return angles about two axes: two circles meet on the joint sphere in at most two points.
 
@@ -99,7 +103,8 @@ def two_axis_angles(
     circles miss, the intermediate point is taken in the plane of the axes, which keeps the limb's
     azimuth about the proximal axis: the reachable set is a band about that axis, so this is the
     exact least-squares answer (as in Elias & Wen 2022, arXiv:2211.05737). Which of the two points
-    counts is the branch rule's say.
+    counts is the branch rule's say; a ``deliberate`` twist is a movement like the others, whose
+    size is no reason to change the branch.
     """
     solutions, sines, excess = two_axis_solutions(
         np.ascontiguousarray(rotations),
@@ -109,7 +114,10 @@ def two_axis_angles(
         np.ascontiguousarray(long_axis),
     )
     if settings.branch == "viterbi":
-        branch = smoothest_branches(solutions, twist_known, settings.twist_cost)
+        cost = settings.twist_cost
+        if deliberate:  # mean squares: they choose between whole paths and never buy a leap
+            cost /= 3 * max(1, int(np.isfinite(sines).sum()))
+        branch = smoothest_branches(solutions, twist_known, cost, deliberate)
     elif settings.branch == "smallest-twist":
         smaller = np.abs(solutions[:, 1, 2]) < np.abs(solutions[:, 0, 2])
         branch = (smaller & twist_known).astype(np.int8)
@@ -122,20 +130,33 @@ def two_axis_angles(
 
 
 def three_axis_angles(
-    rotations: Array, axes: Array, rest: Array, settings: AngleSettings
+    rotations: Array,
+    axes: Array,
+    rest: Array,
+    long_axis: Array,
+    twist_known: Mask,
+    settings: AngleSettings,
 ) -> JointAngles:
     """Return angles about three axes of any directions, which leave no twist over.
 
     ``R(a3, θ3) R(a2, θ2) R(a1, θ1) rest``: the first axis plays the limb of a two-axis joint, and
-    the rotation about it the twist.
+    the rotation about it the twist. Where the orientation about the limb is arbitrary, nothing
+    tells θ1: it is NaN, and the others take the limb where it is as if θ1 were zero.
     """
-    relative = rotations @ rest.T
-    everywhere = np.ones(len(rotations), dtype=bool)
-    solved = two_axis_angles(relative, axes[1:], np.eye(3), axes[0], everywhere, settings)
-    angles = np.column_stack([solved.twists, solved.angles[:, :2]])
-    return JointAngles(
-        angles, np.where(np.isnan(solved.twists), np.nan, 0.0), solved.excess, solved.sines
+    if settings.branch == "smallest-twist":  # there is none
+        settings = replace(settings, branch="viterbi")
+    solved = two_axis_angles(
+        rotations @ rest.T, axes[1:], np.eye(3), axes[0], twist_known, settings, deliberate=True
     )
+    first, others = np.where(twist_known, solved.twists, np.nan), solved.angles[:, :2]
+    twists = np.where(np.isnan(first), np.nan, 0.0)
+    excess, sines = solved.excess, solved.sines
+    if not twist_known.all():
+        limb = two_axis_angles(rotations, axes[1:], rest, long_axis, twist_known, settings)
+        others = np.where(twist_known[:, None], others, limb.angles[:, :2])
+        excess = np.where(twist_known, excess, limb.excess)
+        sines = np.where(twist_known, sines, limb.sines)
+    return JointAngles(np.column_stack([first, others]), twists, excess, sines)
 
 
 def unwrapped(angles: Array) -> Array:

@@ -53,6 +53,8 @@ class JointFit:
     """How far one axis falls short, where a second was added; empty where none was."""
     loose: str = ""
     """How far halves of the movement contradict each other where its axes still serve."""
+    misfit: str = ""
+    """How far axes from another recording miss the limb of this one, where they do."""
 
 
 def fit_joint(
@@ -99,7 +101,7 @@ def fit_joint(
         axes, rest, order = movement_rest(view, axes, quality.heights, settings)
         quality = quality.ordered(order)
         uncertainty = quality.uncertainty
-        if n_axes == 2:
+        if n_axes > 1:
             share, _ = reach_and_twist(view, axes, rest, settings)
             if share > OUT_OF_REACH:
                 doubts.append(f"the limb is out of these axes' reach in {share:.0%} of the frames")

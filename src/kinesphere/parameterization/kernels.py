@@ -165,18 +165,21 @@ def twist_between(model: Array, actual: Array, long_axis: Array) -> float:
 
 
 @kernel
-def smoothest_branches(solutions: Array, twist_known: Mask, twist_cost: float) -> Branches:
+def smoothest_branches(
+    solutions: Array, twist_known: Mask, twist_cost: float, whole: bool = False
+) -> Branches:
     """Return the branch of every frame on the cheapest path (Viterbi, two states).
 
     A step costs the sum of the wrapped changes of θ1, θ2 and twist, at most 3 rad; a frame costs
-    its squared twist times ``twist_cost``, or where no twist is known a little for not lying on
-    the rest position's side. Frames of NaN are stepped over.
+    its squared twist (the ``whole`` of its squared angles) times ``twist_cost``, or where no twist
+    is known a little for not lying on the rest position's side. Frames of NaN are stepped over.
 
     Parameters
     ----------
     solutions : (n, 2, 3) rad
     twist_known : (n,) bool
     twist_cost
+    whole
 
     Returns
     -------
@@ -197,6 +200,8 @@ def smoothest_branches(solutions: Array, twist_known: Mask, twist_cost: float) -
             own = 1e-3 * b
             if twist_known[f]:
                 own = twist_cost * solutions[f, b, 2] ** 2
+                if whole:
+                    own += twist_cost * (solutions[f, b, 0] ** 2 + solutions[f, b, 1] ** 2)
             if last < 0:
                 new[b] = own
                 continue

@@ -82,6 +82,19 @@ def stage_warnings(
             "one axis leaves the limb so far off that a second, across it, was added to rebuild "
             f"its poses: {', '.join(added)}"
         )
+    doubted = [
+        f"{name} ({'; '.join(fit.doubts)})"
+        for name, fit in fits.items()
+        if fit.source == "reused" and fit.doubts
+    ]
+    if doubted:
+        warnings.append(f"reused axes are doubtful where they come from: {', '.join(doubted)}")
+    missing = [f"{name} ({fit.misfit})" for name, fit in fits.items() if fit.misfit]
+    if missing:
+        warnings.append(
+            "reused axes do not fit this recording, so these limbs are not rebuilt where they were "
+            f"seen: {', '.join(missing)}"
+        )
     no_valley = [
         name
         for name, joint in seen.items()

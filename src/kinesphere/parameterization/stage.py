@@ -30,6 +30,7 @@ from kinesphere.parameterization.measures import (
     paper_measures,
 )
 from kinesphere.parameterization.report import Told, result_findings, stage_warnings, told
+from kinesphere.parameterization.reused import misfit, reused_fit
 from kinesphere.parameterization.settings import (
     AxesSettings,
     ParameterizationSettings,
@@ -108,8 +109,10 @@ def parameterize(
             settings,
             human,
         )
-        fit = _reused(joint.name, reuse) or fit_axes(view, settings)
+        fit = reused_fit(joint.name, reuse) or fit_axes(view, settings)
         solved = solve_joint(view, fit.axes, fit.rest, settings)
+        if fit.source == "reused":
+            fit = replace(fit, misfit=misfit(view, solved, settings))
         rebuilt = joint_rotations(fit.axes, fit.rest, limb.long_axis, solved.angles, solved.twists)
         mid_point = lever(joint.centre_in_child, limb.length, limb.long_axis)
         angles[:, j], twists[:, j] = solved.angles, solved.twists
@@ -190,7 +193,12 @@ def _windows(
             raise BadSetting(
                 f"{setting} names {', '.join(strange)}; the joints are {', '.join(joints)}"
             )
-    return [_window(motion, own.get(name, own.get(kinds[name], calibration))) for name in joints]
+    masks = []
+    for name in joints:
+        key = name if name in own else kinds[name]
+        said = f"axes.windows gives {key}" if key in own else "calibration is"
+        masks.append(_window(motion, own.get(key, calibration), said))
+    return masks
 
 
 def _windows_beyond(motion: Motion, axes: AxesSettings) -> tuple[str, ...]:
@@ -204,31 +212,16 @@ def _windows_beyond(motion: Motion, axes: AxesSettings) -> tuple[str, ...]:
     )
 
 
-def _window(motion: Motion, calibration: tuple[float, float] | None) -> Mask:
-    """Return which frames lie in a calibration window, (n_frames,)."""
+def _window(motion: Motion, calibration: tuple[float, float] | None, said: str) -> Mask:
+    """Return which frames lie in a calibration window, (n_frames,), that somebody ``said``."""
     if calibration is None:
         return np.ones(motion.n_frames, dtype=bool)
     start, end = calibration
     window = np.asarray((motion.times >= start) & (motion.times <= end))
     if not window.any():
         last = motion.times[-1] if motion.n_frames else 0.0
-        raise BadSetting(
-            f"calibration is {start}–{end} s; the recording runs from 0 to {last:.2f} s"
-        )
+        raise BadSetting(f"{said} {start:g}–{end:g} s; the recording runs from 0 to {last:.2f} s")
     return window
-
-
-def _reused(name: str, reuse: Skeleton | None) -> JointFit | None:
-    """Return the joint's axes from another solution; None if it has none of that name."""
-    if reuse is None or name not in reuse.joint_names:
-        return None
-    joint = reuse.joint(name)
-    if joint.axes is None or joint.rest is None or joint.axes_source == "body":
-        return None  # what was assumed there may be measured here
-    unknown = np.full(joint.n_axes, np.nan)
-    uncertainty = unknown if joint.axes_uncertainty is None else joint.axes_uncertainty
-    findings: dict[str, Json] = {"n_axes": joint.n_axes, "axes_source": "reused"}
-    return JointFit(joint.axes, joint.rest, "reused", uncertainty, findings, ())
 
 
 def _flags(
@@ -240,7 +233,7 @@ def _flags(
 ) -> Codes:
     """Return the JointFlags of joint ``j``, (n_frames,) uint8."""
     limbs = [int(motion.skeleton.parents[j + 1]), j + 1]
-    unseen = np.isnan(solved.angles[:, 0])
+    unseen = np.isnan(solved.angles[:, len(fit.axes) - 1])
     flags = np.where(unseen, JointFlag.UNSEEN, 0)
     with np.errstate(invalid="ignore"):
         far = solved.excess > np.deg2rad(settings.angles.unreachable)

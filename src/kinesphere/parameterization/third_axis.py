@@ -7,21 +7,27 @@ from itertools import combinations
 import numpy as np
 
 from kinesphere.data import Json
+from kinesphere.geometry.rotations import mean_rotation
 from kinesphere.parameterization.anatomy import N_AXES, body_axes, joint_kind
+from kinesphere.parameterization.angles import solve_angles
+from kinesphere.parameterization.axes.fit import thinned
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.axes.twist_phases import TwistAxis, find_twist_axis
 from kinesphere.parameterization.confidence import observed_n_axes
 from kinesphere.parameterization.joint import (
+    OUT_OF_REACH,
     JointFit,
     angles_between,
     asked_n_axes,
     first_excursion_positive,
     fit_joint,
 )
+from kinesphere.parameterization.samples import Phase
 from kinesphere.parameterization.second_axis import second_axis
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.view import JointView, view_joint
 
+LARGELY = 0.25  # of the frames: so often near a singular pose, three angles tell less than two
 TOLD = 0.9  # of the frames must tell the twist
 PER_AXIS = ("ranges_deg", "conditioning", "halves_disagreement_deg")
 
@@ -33,7 +39,8 @@ def fit_axes(view: JointView, settings: ParameterizationSettings) -> JointFit:
     (`find_twist_axis`), the axis of that, fixed in the child, is axis 1 of three, the most distal
     one; no twist is left over, and the twist phases have no say about the other two. A
     hinge that does so gets an axis across both, as the elbow of ISB has between flexion and
-    pronation (Wu et al. 2005, doi:10.1016/j.jbiomech.2004.05.042). Where the user says how many
+    pronation (Wu et al. 2005, doi:10.1016/j.jbiomech.2004.05.042). Phases that are about an axis
+    which moves the limb anyway tell no third (`_explained`). Where the user says how many
     axes a joint has, it has those.
 
     Parameters
@@ -47,16 +54,58 @@ def fit_axes(view: JointView, settings: ParameterizationSettings) -> JointFit:
     if asked in (None, 3) and settings.axes.method in BY_ORIENTATION:
         told = view.twist_known[view.calibration]
         enough = len(told) > 0 and told.mean() >= TOLD
-        if enough and (twist := find_twist_axis(view.samples, settings)) is not None:
+        twist = find_twist_axis(view.samples, settings) if enough else None
+        explained: tuple[Phase, ...] = ()
+        while twist is not None:
             calm = _without(view, twist, settings)
             kind = joint_kind(view.name)
             swings = N_AXES[kind] if kind else observed_n_axes(calm.samples)
             fit = fit_joint(calm, settings, swings)
-            if fit.source == "movement" and not fit.doubts:
-                joined = _joined(view, fit, twist, settings)
-                if joined is not None:
-                    return joined
+            if fit.source != "movement" or fit.doubts:
+                break
+            if again := _explained(view, fit, twist, settings):
+                explained += again
+                twist = find_twist_axis(view.samples, settings, explained)
+                continue
+            joined = _joined(view, fit, twist, settings)
+            if joined is not None and _serves(view, joined, settings):
+                return joined
+            break
     return fit_joint(view, settings)
+
+
+def _explained(
+    view: JointView, fit: JointFit, twist: TwistAxis, settings: ParameterizationSettings
+) -> tuple[Phase, ...]:
+    """Return the twist phases that are about one of the axes which move the limb.
+
+    A limb that lies along its proximal axis turns about itself where it turns about that. Where no
+    name tells which axis is the proximal one, either may be.
+    """
+    fixed = fit.axes if joint_kind(view.name) is None else fit.axes[-1:]
+    near = np.cos(np.deg2rad(settings.axes.smallest_angle))
+    found = []
+    for phase in twist.phases:
+        posture = mean_rotation(view.samples.rotations[thinned(phase)])
+        if np.abs(fixed @ posture @ twist.axis).max() > near:
+            found.append(phase)
+    return tuple(found)
+
+
+def _serves(view: JointView, fit: JointFit, settings: ParameterizationSettings) -> bool:
+    """Return whether three axes reach every pose and are hardly ever singular."""
+    solved = solve_angles(
+        view.samples.rotations,
+        fit.axes,
+        fit.rest,
+        view.long_axis,
+        view.twist_known[view.calibration],
+        settings.angles,
+        settings.twist,
+    )
+    far = solved.excess > np.deg2rad(settings.angles.unreachable)
+    edge = solved.sines < np.sin(np.deg2rad(settings.angles.singular))
+    return bool(far.mean() <= OUT_OF_REACH and edge.mean() <= LARGELY)
 
 
 def _without(view: JointView, twist: TwistAxis, settings: ParameterizationSettings) -> JointView:

@@ -79,10 +79,20 @@ def normalized_somehow(
 def _facing_an_axis(motion: Motion, settings: NormalizationSettings) -> tuple[Motion, Facing]:
     for front in FRONTS[:-1]:
         try:
-            return normalize(motion, settings, front), front
+            return _assumed(normalize(motion, settings, front), front), front
         except AmbiguousFacing:
             continue
-    return normalize(motion, settings, FRONTS[-1]), FRONTS[-1]
+    return _assumed(normalize(motion, settings, FRONTS[-1]), FRONTS[-1]), FRONTS[-1]
+
+
+def _assumed(motion: Motion, front: Facing) -> Motion:
+    """Return a normalized motion whose history does not say that a user named the front."""
+    *before, step = motion.history
+    facing = {**step.findings["facing"], "decided_by": f"assumed ({front})"}  # type: ignore[dict-item]
+    return replace(
+        motion,
+        history=(*before, replace(step, findings={**step.findings, "facing": facing})),
+    )
 
 
 def _first(error: Exception) -> str:

@@ -6,7 +6,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from kinesphere.data import Joint, Skeleton, Solution
+from kinesphere.data import Joint, Json, Skeleton, Solution, Step
+from kinesphere.parameterization import told_of
 
 Source: TypeAlias = Solution | Skeleton
 """Another recording of the same person, solved."""
@@ -17,7 +18,10 @@ def skeletons_of(sources: Source | Sequence[Source] | None) -> tuple[Skeleton, .
     if sources is None:
         return ()
     several = (sources,) if isinstance(sources, Solution | Skeleton) else sources
-    return tuple(s.skeleton if isinstance(s, Solution) else s for s in several)
+    return tuple(
+        replace(s.skeleton, history=s.parameters.history) if isinstance(s, Solution) else s
+        for s in several
+    )
 
 
 def with_best_axes(
@@ -39,7 +43,8 @@ def with_best_axes(
     Returns
     -------
     skeleton
-        Joints that nobody measured have no axes.
+        Joints that nobody measured have no axes. The last step of its history says of the others
+        what was found of their axes where they come from.
     chosen
         Joint → index in ``sources``.
     """
@@ -63,7 +68,11 @@ def with_best_axes(
                 axes_uncertainty=other.axes_uncertainty,
             )
         joints.append(nothing)
-    return replace(skeleton, joints=tuple(joints)), chosen
+    told: dict[str, Json] = {
+        name: dict(told_of(name, sources[place])) for name, place in chosen.items()
+    }
+    step = Step("parameterization", findings={"joints": told})
+    return replace(skeleton, joints=tuple(joints), history=(*skeleton.history, step)), chosen
 
 
 def _measured(joint: Joint) -> bool:

@@ -1,5 +1,6 @@
 """The axis a limb turns about when it turns about itself, from movements that do nothing else."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,7 +46,9 @@ class TwistAxis:
         return float(np.hypot(self.halves / 2, TISSUE / max(self.range, TISSUE)))
 
 
-def find_twist_axis(samples: JointSamples, settings: ParameterizationSettings) -> TwistAxis | None:
+def find_twist_axis(
+    samples: JointSamples, settings: ParameterizationSettings, without: Sequence[Phase] = ()
+) -> TwistAxis | None:
     """Find the axis of twist phases in the child; None where there are none, or none that tell.
 
     The paper's filter looks at the limb's direction, which a twist leaves where it is. Here the
@@ -62,13 +65,15 @@ def find_twist_axis(samples: JointSamples, settings: ParameterizationSettings) -
         One joint.
     settings
         Of the filter and of axes.
+    without
+        Phases that do not count.
 
     Returns
     -------
     TwistAxis or None
         Only one that is better known than the limb's own line, which serves without it.
     """
-    phases = _pure(samples, settings)
+    phases = tuple(phase for phase in _pure(samples, settings) if phase not in without)
     axis = _pooled(samples, phases)
     if axis is None or sum(b - a for a, b in phases) < LEAST * samples.rate:
         return None
