@@ -21,7 +21,7 @@ def obj(tmp_path):
 
 
 def test_info_tells_what_a_mesh_is(call, obj):
-    said = call("info", obj).out
+    said = " ".join(call("info", obj).out.split())  # a long path breaks the lines elsewhere
     assert "a mesh of 8,000 triangles, 4,002 vertices" in said
     assert "none; found when it is attached" in said
     told = json.loads(call("info", obj, "--json").out)
