@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from benchmarks.markerless.measures import ASTRAY
-from benchmarks.markerless.real import NEAR, RealOutcome
+from benchmarks.markerless.real import NAMES, NEAR, RealOutcome
 from benchmarks.markerless.rendered import CASES, Case, Outcome
 
 
 def page(films: Sequence[Outcome], real: Sequence[RealOutcome]) -> str:
-    """Return the page as Markdown; cases without an outcome are named as not run."""
+    """Return the page as Markdown; what has no outcome is named as not run."""
     lines = [
         "# Without markers",
         "",
@@ -30,8 +30,7 @@ def page(films: Sequence[Outcome], real: Sequence[RealOutcome]) -> str:
     ]
     done = dict.fromkeys(outcome.case for outcome in films)
     lines += [_row(case, [o for o in films if o.case == case]) for case in done]
-    if waiting := [case.name for case in CASES if case not in done]:
-        lines += ["", f"Not run: {'; '.join(waiting)}."]
+    lines += _not_run([case.name for case in CASES if case not in done])
     lines += [
         "",
         "## Real footage",
@@ -51,7 +50,12 @@ def page(films: Sequence[Outcome], real: Sequence[RealOutcome]) -> str:
             f"| {one.name} | {one.n_frames} | {_number(one.overlap, 2)} ({one.overlap_wanted:g}) | "
             f"{wrists} | {one.frames_lost} | {one.failed or _verdict(one.missed)} |"
         )
+    lines += _not_run([name for name in NAMES if name not in {one.name for one in real}])
     return "\n".join(lines) + "\n"
+
+
+def _not_run(names: Sequence[str]) -> list[str]:
+    return ["", f"Not run: {'; '.join(names)}."] if names else []
 
 
 def _row(case: Case, all_seeds: Sequence[Outcome]) -> str:

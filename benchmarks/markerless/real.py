@@ -24,6 +24,12 @@ from kinesphere.markerless.tracker import track
 
 DISTURBED = 5
 """Starts that are tried beside the one found."""
+NAMES = (
+    "pose2sim, start found",
+    *(f"pose2sim, start disturbed {i + 1}" for i in range(DISTURBED)),
+    "parsec, one instant, start found",
+)
+"""Of what is tracked: a recording and its start."""
 NEAR = 0.15
 """m; a wrist nearer to the keypoints' than this is held found."""
 
@@ -58,12 +64,11 @@ def outcomes(folder: Path, only: str = "", n_frames: int = 300) -> Iterator[Real
     """
     if not DATA.is_dir():
         return
-    for seed in range(DISTURBED + 1):
-        name = f"pose2sim, start disturbed {seed}" if seed else "pose2sim, start found"
+    for seed, name in enumerate(NAMES[:-1]):
         if only in name:
             yield pose2sim(name, folder / "pose2sim", seed, n_frames)
-    if only in "parsec, one instant, start found":
-        yield parsec("parsec, one instant, start found", folder / "parsec")
+    if only in NAMES[-1]:
+        yield parsec(NAMES[-1], folder / "parsec")
 
 
 def pose2sim(name: str, folder: Path, seed: int, n_frames: int, data: Path = DATA) -> RealOutcome:

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from benchmarks.markerless.measures import Errors
-from benchmarks.markerless.real import RealOutcome
+from benchmarks.markerless.real import NAMES, RealOutcome
 from benchmarks.markerless.rendered import CASES, Outcome
 from kinesphere.io import replacing
 
@@ -13,7 +13,7 @@ RESULTS = Path(__file__).parents[1] / "results" / "markerless.json"
 
 
 def kept(path: Path = RESULTS) -> tuple[list[Outcome], list[RealOutcome]]:
-    """Return what was measured before: films in the order of ``CASES``, then recordings by name.
+    """Return what was measured before: films in the order of ``CASES``, recordings of ``NAMES``.
 
     Cases that are no longer there, or have other limits or conditions now, are left out.
     """
@@ -26,7 +26,7 @@ def kept(path: Path = RESULTS) -> tuple[list[Outcome], list[RealOutcome]]:
             if row["case"] == json.loads(json.dumps(asdict(case))):
                 errors = None if row["errors"] is None else Errors(**row["errors"])
                 films.append(Outcome(case, row["seed"], row["n_frames"], errors, row["failed"]))
-    return films, [RealOutcome(**row) for row in stored["real"]]
+    return films, [RealOutcome(**row) for row in stored["real"] if row["name"] in NAMES]
 
 
 def keep(
@@ -38,7 +38,7 @@ def keep(
     by_name = {o.name: o for o in (*old_real, *real)}
     order = {case.name: i for i, case in enumerate(CASES)}
     all_films = sorted(by_seed.values(), key=lambda o: (order[o.case.name], o.seed))
-    all_real = sorted(by_name.values(), key=lambda o: o.name)
+    all_real = [by_name[name] for name in NAMES if name in by_name]
     stored = {
         "films": [asdict(outcome) for outcome in all_films],
         "real": [asdict(outcome) for outcome in all_real],

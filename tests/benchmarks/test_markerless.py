@@ -10,7 +10,7 @@ pytest.importorskip("av")
 
 from benchmarks.markerless.measures import errors_of
 from benchmarks.markerless.page import page
-from benchmarks.markerless.real import RealOutcome
+from benchmarks.markerless.real import NAMES, RealOutcome
 from benchmarks.markerless.rendered import CASES, Case, Outcome
 from benchmarks.markerless.store import keep, kept
 
@@ -69,13 +69,14 @@ def test_one_case_measured_anew_leaves_the_others(film, tracked_film, tmp_path):
     first, second = CASES[0], CASES[2]
     assert kept(path) == ([], [])
     keep([Outcome(second, 1, 300, good), Outcome(first, 1, 300, good)], [], path)
-    keep([], [RealOutcome("real", overlap=0.7, overlap_wanted=0.8)], path)
+    keep([], [RealOutcome(NAMES[1], overlap=0.7, overlap_wanted=0.8)], path)
     anew = Outcome(first, 1, 20, replace(good, elbow_rms=9.0))
     films, real = keep([anew], [], path)
     assert films == [anew, Outcome(second, 1, 300, good)]
-    assert [(one.name, one.missed) for one in real] == [("real", True)]
+    assert [(one.name, one.missed) for one in real] == [(NAMES[1], True)]
     text = page(films, real)
     assert "Not run: push-ups, true shape; " in text
+    assert f"Not run: {NAMES[0]}; {NAMES[2]}" in text
     # what was measured under other limits is no result of this case
     path.write_text(path.read_text().replace('"rms": 1.2', '"rms": 1.3'))
     assert [outcome.case for outcome in kept(path)[0]] == [second]
