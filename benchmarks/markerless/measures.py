@@ -30,20 +30,17 @@ class Errors:
     frames_unsolved: int
     overlap: float
     """Mean over frames and cameras."""
-    frames_per_s: float
-    """Without decoding or rendering, start and fitting of the shape."""
 
 
 def errors_of(tracked: TrackedMotion, film: Film) -> Errors:
-    """Return the errors of a tracked film."""
-    truth = film.motion
+    """Return the errors of a tracked film, or of its beginning."""
+    truth, n = film.motion, tracked.n_frames
     at = {name: i for i, name in enumerate(truth.surface.limbs)}
     columns = [at[name] for name in tracked.limb_names[1:]]
-    off = np.linalg.norm(tracked.origins[:, 1:] - truth.joint_centres[:, columns], axis=-1)
+    off = np.linalg.norm(tracked.origins[:, 1:] - truth.joint_centres[:n, columns], axis=-1)
     solved = tracked.solved
     elbows = np.stack([angle_at(tracked, f"{s}_forearm") for s in ("left", "right")], axis=-1)
-    error = np.degrees(elbows - film.elbow_angles)[solved]
-    seconds = tracked.seconds.get("tracking", np.nan)
+    error = np.degrees(elbows - film.elbow_angles[:n])[solved]
     return Errors(
         elbow_mean=float(np.abs(error).mean()),
         elbow_rms=float(np.sqrt((error**2).mean())),
@@ -52,7 +49,6 @@ def errors_of(tracked: TrackedMotion, film: Film) -> Errors:
         frames_astray=int((off[solved] > ASTRAY).any(axis=1).sum()),
         frames_unsolved=int((~solved).sum()),
         overlap=float(np.nanmean(tracked.overlap)),
-        frames_per_s=tracked.n_frames / seconds,
     )
 
 

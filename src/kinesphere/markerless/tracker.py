@@ -22,6 +22,7 @@ from kinesphere.markerless.rehearsal import rehearse
 from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.shape import FACTORS, shaped
 from kinesphere.markerless.shape_fit import fit_shape
+from kinesphere.markerless.sizes import with_best_size
 from kinesphere.markerless.tracked import TrackedMotion
 from kinesphere.markerless.tracking import Tracking
 from kinesphere.markerless.watching import backwards, masks_throughout, pictures_of
@@ -80,7 +81,13 @@ def track(
     seconds: dict[str, float] = {}
     clock = perf_counter()
     say("start", 0, 1)
-    start = start or first_pose(scene, surface, model, settings, scene.frame(first))
+    opening = scene.frame(first)
+    start = start or first_pose(scene, surface, model, settings, opening)
+    if start.how == "given" and scene.body.fit and scene.body.height is None:
+        pictures = pictures_of(opening, masks)
+        start = with_best_size(
+            start, scene.cameras, surface, model, settings, pictures, masks=masks
+        )
     logs, pose = start.logs, start.pose
     fitter = fitter_for(model(shaped(surface, logs)), scene.cameras, settings, masks=masks)
     seconds["start"], clock = perf_counter() - clock, perf_counter()
