@@ -39,6 +39,7 @@ def pair_costs(
     expected_variance: Array,
     expected_log: Array,
     log_variance: Array,
+    stiller: float,
     outlier: float,
     costs: Single,
 ) -> None:
@@ -51,6 +52,8 @@ def pair_costs(
         (squared), and how much the pair counts (0 where never seen together).
     expected, expected_variance, expected_log, log_variance : (n_labels, n_labels)
         Of the template; NaN where it knows nothing of a pair.
+    stiller
+        What a deviation below the expected one counts, beside one above it.
     outlier
         What a pair costs about which nothing is known: the zero of all costs.
     costs : (n_points, n_labels, n_points, n_labels)
@@ -68,6 +71,8 @@ def pair_costs(
                     v = expected_variance[i, j] + variance[k, p]
                     x = (mean[k, p] - mu) ** 2 / (2 * v)
                     y = (log_std[k, p] - expected_log[i, j]) ** 2 / (2 * log_variance[i, j])
+                    if log_std[k, p] < expected_log[i, j]:
+                        y *= stiller
                     usual = expected_variance[i, j] + _share(expected_log[i, j])
                     cost = x / (1 + x / _SOFT) + y / (1 + y / _SOFT) + 0.5 * np.log(v / usual)
                     costs[k, i, p, j] = weight[k, p] * (cost - outlier)

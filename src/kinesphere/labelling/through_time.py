@@ -6,8 +6,9 @@ and forwards in time. A track that stops fitting its label is cut.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,11 +27,17 @@ COVERED = 0.5
 """Share of a window that a track must fill to be looked at there."""
 TRIED = 5
 """Windows labelled; the one whose labels fit best, and most, counts."""
+AGREEING = 0.8
+"""Share of the tracks that two windows share whose labels must agree for both to count."""
+SUREST = 0.999
+"""Confidence that one window counts at most."""
 WHOLE = 1.5
 """Tracks a label up to which a recording counts as whole, and is labelled in one piece."""
-FITS = (2.0, 3.0)
+FITS = (2.0, 5.5)
 """Mean square deviation up to which a piece keeps a label's distances: 1 is usual, strangers have
 6 to 9. The second is for the end, when the distances are known from all movement."""
+USUAL = 3.0
+"""Mean square deviation up to which a block fits another label."""
 CLEAR = (2.0, 1.5)
 """How much worse the next label must fit, in the same terms."""
 BLOCK_S = 0.1
@@ -108,7 +115,13 @@ def label_through_time(
     state.fit = match.fit
     if match.note:
         state.notes.append(match.note)
-    for k, label, sure in zip(columns, match.labels, match.confidence, strict=True):
+    order = np.argsort(-match.confidence, kind="stable")
+    for k, label, sure in zip(
+        np.array(columns, dtype=np.intp)[order],
+        match.labels[order],
+        match.confidence[order],
+        strict=True,
+    ):
         if label >= 0 and sure >= least_confidence and state.labels[k] < 0:
             _give(state, markers, int(k), int(label), float(sure))
     fixed = {k for k, track in enumerate(tracks) if track[0].column in seeds}
@@ -212,23 +225,55 @@ def _recognised(
     lengths = np.array([sum(r.end - r.start for r in track) for track in state.tracks])
     if not len(lengths):
         return nothing(0, "no marker is ever seen"), []
-    long = int((lengths >= COVERED * n_frames).sum())
-    if len(lengths) <= WHOLE * n_labels + 4 and long >= 0.5 * min(n_labels, len(lengths)):
-        columns = list(range(len(state.tracks)))
-        state.windows_s.append((0.0, n_frames / rate))
-        return labeller(points_of(markers, state.tracks), model), columns
-    best: tuple[float, Match, list[int]] | None = None
-    for start, end, columns in _windows(state.tracks, n_frames, rate, n_labels):
+    long = lengths >= COVERED * n_frames
+    whole = len(lengths) <= WHOLE * n_labels + 4 and 2 * long.sum() >= min(n_labels, len(lengths))
+    stretches = [] if long.all() else _windows(state.tracks, n_frames, rate, n_labels)
+    if whole:
+        stretches.append((0, n_frames, list(range(len(state.tracks)))))
+    found: list[_Seen] = []
+    for start, end, columns in stretches:
         points = points_of(markers, [state.tracks[k] for k in columns])[start:end]
         match = labeller(points, model)
         sure = (match.labels >= 0) & (match.confidence >= least_confidence)
         worth = float(sure.sum()) * (match.fit if np.isfinite(match.fit) else 1.0)
-        if not match.note and (best is None or worth > best[0]):
-            best = worth, match, columns
-            state.windows_s = [(start / rate, end / rate)]
-    if best is None:
+        if len(stretches) == 1 or not match.note:
+            found.append(_Seen(worth, match, columns, (start / rate, end / rate)))
+    if not found:
         return nothing(0, "at no time can enough of the body be seen at once"), []
-    return best[1], best[2]
+    return _agreed(found, state, n_labels)
+
+
+class _Seen(NamedTuple):
+    """The body, as one window shows it."""
+
+    worth: float
+    match: Match
+    columns: list[int]
+    """The tracks it is about."""
+    window_s: tuple[float, float]
+
+
+def _agreed(found: list[_Seen], state: Labelled, n_labels: int) -> tuple[Match, list[int]]:
+    """Return what the best window says, and those that agree with it on the tracks they share."""
+    found = sorted(found, key=lambda one: -one.worth)
+    best = found[0]
+    evidence = np.zeros((len(state.tracks), n_labels))
+    used = []
+    for one in found:
+        given = one.match.labels >= 0
+        columns, labels = np.array(one.columns, dtype=np.intp)[given], one.match.labels[given]
+        held = evidence[columns].max(axis=1) > 0
+        same = evidence[columns].argmax(axis=1) == labels
+        if one is not best and (not held.any() or same[held].mean() < AGREEING):
+            continue
+        evidence[columns, labels] -= np.log1p(-np.minimum(one.match.confidence[given], SUREST))
+        used.append(one)
+    state.windows_s += sorted(one.window_s for one in used)
+    columns = sorted({k for one in used for k in one.columns})
+    ranked = np.sort(evidence[columns], axis=1)
+    lead = ranked[:, -1] - (ranked[:, -2] if n_labels > 1 else 0.0)
+    labels = np.where(lead > 0, evidence[columns].argmax(axis=1), -1)
+    return replace(best.match, labels=labels, confidence=1 - np.exp(-lead)), columns
 
 
 def _windows(
@@ -312,13 +357,14 @@ def _sweep(
         if not known.any():
             continue
         cost = np.where(known, cost, np.inf)
-        # a taken label still competes: what fits it best is a copy of it, no other marker
         score = np.where(known, cost + width, np.inf)
         free = np.where(taken | (cost > FITS[late]), np.inf, score)
         label = int(free.argmin())
         if not np.isfinite(free[label]):
             continue
-        second = float(np.delete(score, label).min(initial=np.inf))
+        # a taken label still competes: what fits it best is a copy of it, no other marker
+        lead = np.where(taken & late, score + CLEAR[late], score)
+        second = float(np.delete(lead, label).min(initial=np.inf))
         if second < free[label] + CLEAR[late]:
             continue
         offers.append((float(free[label]), second, k, label))
@@ -382,7 +428,7 @@ def _cut_foreign(
                 frames = np.arange(a, b)
                 cost, _ = costs_of(markers[frames, run.column], frames, state.points, own)
                 others = np.delete(np.where(np.isnan(cost), np.inf, cost), label)
-                better = others.min(initial=np.inf) <= FITS[1]
+                better = others.min(initial=np.inf) <= 3.0
                 foreign.append(bool(cost[label] > FOREIGN and better))
             bad += [
                 Run(run.column, int(edges[r.start]), int(edges[r.end]))
