@@ -12,6 +12,8 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from kinesphere.comparison import Comparison as Comparison
+    from kinesphere.comparison import compare as compare
     from kinesphere.data import Analog as Analog
     from kinesphere.data import Event as Event
     from kinesphere.data import Joint as Joint
@@ -22,15 +24,24 @@ if TYPE_CHECKING:
     from kinesphere.data import Recording as Recording
     from kinesphere.data import Skeleton as Skeleton
     from kinesphere.data import Solution as Solution
+    from kinesphere.data import Surface as Surface
     from kinesphere.data import TopologicalModel as TopologicalModel
+    from kinesphere.data import bundled_body as bundled_body
     from kinesphere.data import motion_from_parameters as motion_from_parameters
     from kinesphere.data.edits import Edit as Edit
+    from kinesphere.data.isb import IsbAngles as IsbAngles
+    from kinesphere.data.isb import isb_angles as isb_angles
     from kinesphere.editing import apply_edits as apply_edits
+    from kinesphere.editing import attach_surface as attach_surface
+    from kinesphere.editing import skin as skin
     from kinesphere.errors import KinesphereError as KinesphereError
     from kinesphere.io import read as read
+    from kinesphere.io import read_rig as read_rig
     from kinesphere.io import write as write
+    from kinesphere.io import write_on_rig as write_on_rig
     from kinesphere.labelling import label as label
     from kinesphere.pipeline import Settings as Settings
+    from kinesphere.pipeline import retarget as retarget
     from kinesphere.pipeline import solve as solve
     from kinesphere.report import report_html as report_html
 
@@ -40,16 +51,18 @@ except PackageNotFoundError:  # run from a source tree that nobody installed
     __version__ = "0+unknown"
 
 _ROOMS = {
+    "comparison": "Comparison compare",
     "data": (
         "Analog Event Joint Limb Motion Output Parameters Recording Skeleton Solution "
-        "TopologicalModel motion_from_parameters"
+        "Surface TopologicalModel bundled_body motion_from_parameters"
     ),
     "data.edits": "Edit",
-    "editing": "apply_edits",
+    "data.isb": "IsbAngles isb_angles",
+    "editing": "apply_edits attach_surface skin",
     "errors": "KinesphereError",
-    "io": "read write",
+    "io": "read read_rig write write_on_rig",
     "labelling": "label",
-    "pipeline": "Settings solve",
+    "pipeline": "Settings retarget solve",
     "report": "report_html",
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names.split()}

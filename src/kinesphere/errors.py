@@ -35,3 +35,7 @@ class DegenerateMotion(KinesphereError):
 
 class AmbiguousFacing(KinesphereError):
     """Nothing in the data tells front from back, hence left from right."""
+
+
+class BadSurface(KinesphereError):
+    """A mesh contradicts itself or cannot ride on the skeleton it is given."""

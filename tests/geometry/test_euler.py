@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from kinesphere.geometry.euler import continuous_angles, euler_angles
+from kinesphere.geometry.euler import continuous_angles, euler_angles, swing_angles
 from kinesphere.geometry.rotations import rotation_about
 
 EXACT = 1e-12  # rad; rounding of a few products
@@ -71,3 +71,30 @@ def test_nan_stays_nan_and_harms_no_other_frame():
         angles = euler_angles(rotations, "zyx")
     assert np.isnan(angles[2]).all()
     assert_allclose(angles[[0, 1, 3]], 0.0)
+
+
+def test_swing_angles_are_scipys_away_from_the_singularity(rng):
+    angles = rng.uniform((-np.pi, -3.0, -np.pi), (np.pi, -0.1, np.pi), (50, 3))
+    rotations = Rotation.from_euler("YXY", angles).as_matrix()
+    assert_allclose(swing_angles(rotations), angles, atol=1e-10)
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-16, 1e-12, 1e-8, 1e-4])
+@pytest.mark.parametrize("end", [0.0, -np.pi])
+def test_swing_angles_rebuild_the_rotation_at_the_singularity(rng, off, end):
+    angles = rng.uniform(-np.pi, np.pi, (40, 3))
+    angles[:, 1] = end - off if end == 0 else end + off
+    rotations = (
+        rotation_about(np.eye(3)[1], angles[:, 0])
+        @ rotation_about(np.eye(3)[0], angles[:, 1])
+        @ rotation_about(np.eye(3)[1], angles[:, 2])
+    )
+    a, b, c = swing_angles(rotations).T
+    rebuilt = (
+        rotation_about(np.eye(3)[1], a)
+        @ rotation_about(np.eye(3)[0], b)
+        @ rotation_about(np.eye(3)[1], c)
+    )
+    assert_allclose(rebuilt, rotations, atol=EXACT)
+    assert (b <= 0).all()
+    assert np.isnan(swing_angles(np.full((2, 3, 3), np.nan))).all()

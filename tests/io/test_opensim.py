@@ -167,6 +167,54 @@ def test_opensim_itself_agrees(parameters, files):
                 assert_allclose([there[k] for k in range(3)], positions[frame], atol=PLAYED_BACK)
 
 
+def test_opensim_opens_the_marker_file_of_the_model(performance, tmp_path):
+    """TRC, model and coordinates together: the markers lie where the model carries them."""
+    motion, parameters = performance.motion, performance.parameters
+    placed = motion_from_parameters(parameters).marker_positions()
+    recording = replace(
+        performance.recording,
+        markers=np.stack([placed[label] for label in placed], axis=1),
+        labels=tuple(placed),
+        residuals=None,
+    )
+    for name in ("motion.osim", "motion.mot", "motion.trc"):
+        part = {"osim": motion.skeleton, "mot": parameters, "trc": recording}[name[7:]]
+        write(parameters.skeleton if part is motion.skeleton else part, tmp_path / name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        osim = pytest.importorskip("opensim")
+        osim.Logger.setLevelString("error")
+        model = osim.Model(str(tmp_path / "motion.osim"))
+        state = model.initSystem()
+        table = osim.TimeSeriesTable(str(tmp_path / "motion.mot"))
+        trc = osim.TimeSeriesTableVec3(str(tmp_path / "motion.trc"))
+    assert trc.getTableMetaDataString("Units") == "mm"
+    assert trc.getNumRows() == table.getNumRows() == motion.n_frames
+    names, labels = list(table.getColumnLabels()), list(trc.getColumnLabels())
+    centres = motion.joint_centres()
+    for frame in (0, 20, 74):
+        values, points = table.getRowAtIndex(frame), trc.getRowAtIndex(frame)
+        for k, name in enumerate(names):
+            value = values[k] if name.endswith(("_tx", "_ty", "_tz")) else np.radians(values[k])
+            model.getCoordinateSet().get(name).setValue(state, value, False)
+        model.realizePosition(state)
+        for k, label in enumerate(labels):
+            there = model.getMarkerSet().get(label).getLocationInGround(state)
+            found = [points.getElt(0, k)[i] / 1e3 for i in range(3)]
+            assert_allclose([there[i] for i in range(3)], found, atol=1e-4)
+        for j, joint in enumerate(motion.skeleton.joints):
+            there = model.getJointSet().get(joint.name).getChildFrame().getPositionInGround(state)
+            assert_allclose([there[i] for i in range(3)], centres[frame, j], atol=1e-4)
+
+
+def test_the_files_say_what_their_numbers_mean(files):
+    model, motion = (path.read_text(encoding="utf-8") for path in files)
+    for text in (model, motion):
+        assert "parent_from_child" in text
+        assert "body-fixed" in text
+    assert "Angles are in degrees." in motion
+
+
 def test_gaps_hold_the_last_value_and_unknown_twists_are_zero(
     odd_parameters, gappy_parameters, tmp_path
 ):

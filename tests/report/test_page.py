@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Step
+from kinesphere.data.isb import isb_angles
 from kinesphere.report import report_html
 from kinesphere.report.packing import unpack
 from kinesphere.report.scene import (
@@ -174,7 +175,8 @@ def test_every_joint_has_a_chart_and_a_row(html, solution):
     charts = [e[1]["data-joint"] for e in page.all("article")]
     assert sorted(map(int, charts)) == list(range(len(solution.skeleton.joints)))
     rows = [e for e in page.all("th") if e[1].get("scope") == "row"]
-    assert len(rows) == len(solution.skeleton.joints) + len(solution.skeleton.limbs)
+    clinical = isb_angles(solution.motion, solution.skeleton).joints
+    assert len(rows) == len(solution.skeleton.joints) + len(solution.skeleton.limbs) + len(clinical)
 
 
 def test_left_stands_beside_right(html):

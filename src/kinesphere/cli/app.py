@@ -4,12 +4,14 @@ from typing import Annotated
 
 import typer
 
+from kinesphere.cli.compare import compare
 from kinesphere.cli.convert import convert
 from kinesphere.cli.demo import demo
 from kinesphere.cli.edit import edit
 from kinesphere.cli.info import info
 from kinesphere.cli.label import label
 from kinesphere.cli.learn import model
+from kinesphere.cli.retarget import retarget
 from kinesphere.cli.settings import settings
 from kinesphere.cli.solve import solve
 
@@ -50,5 +52,5 @@ def kinesphere(
         typer.echo(context.get_help())
 
 
-for command in (demo, info, label, solve, edit, convert, model, settings):
+for command in (demo, info, label, solve, edit, retarget, compare, convert, model, settings):
     app.command()(command)

@@ -5,6 +5,7 @@ from pathlib import Path
 from kinesphere.cli.options import BadArgument
 from kinesphere.data import Recording, Solution
 from kinesphere.io import check_file_place, check_solution_place, read, write_solution
+from kinesphere.io.bvh_settings import BvhSettings
 from kinesphere.report import report_html
 
 REPORT = "report.html"
@@ -36,7 +37,9 @@ def check_target(target: Path) -> None:
         check_solution_place(target, [REPORT])
 
 
-def write_solved(solution: Solution, directory: Path, title: str) -> Path:
+def write_solved(
+    solution: Solution, directory: Path, title: str, bvh: BvhSettings | None = None
+) -> Path:
     """Write a solved folder with its report; return where the report is."""
-    write_solution(solution, directory, {REPORT: report_html(solution, title)})
+    write_solution(solution, directory, {REPORT: report_html(solution, title)}, bvh)
     return directory / REPORT

@@ -11,7 +11,7 @@ from kinesphere.cli.options import BadArgument, JsonOption, SubjectOption
 def info(
     file: Annotated[
         Path,
-        typer.Argument(help="A recording, a solved folder, or a file of one; a model."),
+        typer.Argument(help="A recording, a motion, a solved folder, or a file of one; a model."),
     ],
     subject: SubjectOption = None,
     as_json: JsonOption = False,
@@ -27,9 +27,15 @@ def info(
         show_model,
         show_skeleton,
     )
+    from kinesphere.cli.describe_motion import (
+        describe_figure,
+        describe_motion,
+        show_motion,
+        show_rig,
+    )
     from kinesphere.cli.describe_recording import describe_recording, show_recording
     from kinesphere.cli.describe_solution import describe_solution, show_solution
-    from kinesphere.data import Parameters, Recording, Skeleton, Solution, TopologicalModel
+    from kinesphere.data import Motion, Parameters, Recording, Skeleton, Solution, TopologicalModel
     from kinesphere.io import read
 
     found = read(file)
@@ -37,10 +43,13 @@ def info(
         summary = describe_recording(found, subject)
     elif isinstance(found, Solution):
         summary = describe_solution(found)
+    elif isinstance(found, Motion):
+        summary = describe_motion(found)
     elif isinstance(found, TopologicalModel):
         summary = describe_model(found)
     elif isinstance(found, Skeleton | Parameters):
-        summary = describe_skeleton(found if isinstance(found, Skeleton) else found.skeleton)
+        skeleton = found if isinstance(found, Skeleton) else found.skeleton
+        summary = {**describe_skeleton(skeleton), **describe_figure(skeleton)}
     else:
         raise BadArgument(f"{file} holds a {type(found).__name__}, which info cannot describe")
     summary = {"file": str(file), **summary}
@@ -50,6 +59,10 @@ def info(
         show_recording(summary)
     elif isinstance(found, Solution):
         show_solution(summary, found)
+    elif isinstance(found, Motion):
+        show_motion(summary)
+    elif isinstance(found, Skeleton) and not any(joint.n_axes for joint in found.joints):
+        show_rig(summary)
     elif summary["kind"] == "skeleton":
         show_skeleton(summary)
     else:

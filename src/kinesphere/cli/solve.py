@@ -96,7 +96,7 @@ def solve(
             progress=progress,
         )
         progress("writing", len(pipeline.STAGES), len(pipeline.STAGES) + 1)
-        report = write_solved(solution, output, file.name)
+        report = write_solved(solution, output, file.name, settings.bvh)
     summary = {"file": str(file), "output": str(output), **describe_solution(solution)}
     if as_json:
         print_json(summary)

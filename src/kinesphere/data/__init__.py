@@ -4,9 +4,12 @@ from kinesphere.data.arrays import Array as Array
 from kinesphere.data.arrays import Codes as Codes
 from kinesphere.data.arrays import Mask as Mask
 from kinesphere.data.arrays import given_away as given_away
+from kinesphere.data.body import bundled_body as bundled_body
 from kinesphere.data.directions import DIRECTIONS as DIRECTIONS
 from kinesphere.data.directions import UpAxis as UpAxis
 from kinesphere.data.directions import vector_from_direction as vector_from_direction
+from kinesphere.data.gaps import held as held
+from kinesphere.data.gaps import poses_without_gaps as poses_without_gaps
 from kinesphere.data.history import History as History
 from kinesphere.data.history import Json as Json
 from kinesphere.data.history import Step as Step
@@ -28,6 +31,8 @@ from kinesphere.data.recording import Event as Event
 from kinesphere.data.recording import Output as Output
 from kinesphere.data.recording import OutputKind as OutputKind
 from kinesphere.data.recording import Recording as Recording
+from kinesphere.data.rest import default_origins as default_origins
+from kinesphere.data.rest import pivots as pivots
 from kinesphere.data.settings import check_setting as check_setting
 from kinesphere.data.settings import check_settings as check_settings
 from kinesphere.data.settings import setting as setting
@@ -38,3 +43,4 @@ from kinesphere.data.skeleton import Limb as Limb
 from kinesphere.data.skeleton import Observability as Observability
 from kinesphere.data.skeleton import Skeleton as Skeleton
 from kinesphere.data.solution import Solution as Solution
+from kinesphere.data.surface import Surface as Surface

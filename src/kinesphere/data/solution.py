@@ -8,6 +8,7 @@ from kinesphere.data.motion import Motion
 from kinesphere.data.parameters import Parameters
 from kinesphere.data.recording import Recording
 from kinesphere.data.skeleton import Skeleton
+from kinesphere.data.surface import Surface
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +25,8 @@ class Solution:
     """Which topological model was used; ``none`` where the motion alone served."""
     seconds: Mapping[str, float] = field(default_factory=dict)
     """Stage → how long it took."""
+    surface: Surface | None = None
+    """What rides on the skeleton, bound in its default position; None where nothing can."""
 
     @property
     def skeleton(self) -> Skeleton:

@@ -38,6 +38,34 @@ def euler_angles(rotations: Array, order: str) -> Array:
     return sign * np.stack([a, b, third], axis=-1)
 
 
+def swing_angles(rotations: Array) -> Array:
+    """Return angles with ``R = R_y(a) R_x(b) R_y(c)``, b from 0 down to −π.
+
+    As `euler_angles`, the third is read after the others have been undone. Where b is 0 the first
+    and third axis coincide; a is then 0.
+
+    Parameters
+    ----------
+    rotations : (..., 3, 3)
+        NaN stays NaN.
+
+    Returns
+    -------
+    (..., 3) rad
+        a and c in (−π, π].
+    """
+    r = rotations
+    aside = np.hypot(r[..., 0, 1], r[..., 2, 1])
+    a = np.where(aside == 0, 0.0, np.arctan2(-r[..., 0, 1], -r[..., 2, 1]))
+    b = -np.arctan2(aside, r[..., 1, 1])
+    s, c = np.sin(a), np.cos(a)
+    third = np.arctan2(
+        c * r[..., 0, 2] - s * r[..., 2, 2],
+        c * r[..., 0, 0] - s * r[..., 2, 0],
+    )
+    return np.stack([a, b, third], axis=-1)
+
+
 def continuous_angles(angles: Array) -> Array:
     """Return equal rotations whose angles jump as little as they can from frame to frame.
 

@@ -1,17 +1,21 @@
 """Files in and out: a registry that recognises a format by its content, a module per format."""
 
 from kinesphere.io import formats as formats
+from kinesphere.io.amc import read_amc as read_amc
+from kinesphere.io.asf import read_asf as read_asf
 from kinesphere.io.atomic import check_directory_place as check_directory_place
 from kinesphere.io.atomic import check_file_place as check_file_place
 from kinesphere.io.atomic import replacing as replacing
 from kinesphere.io.atomic import replacing_directory as replacing_directory
 from kinesphere.io.bvh import write_bvh as write_bvh
+from kinesphere.io.bvh_motion import read_bvh as read_bvh
 from kinesphere.io.c3d import read_c3d as read_c3d
 from kinesphere.io.c3d import write_c3d as write_c3d
 from kinesphere.io.csv import read_csv as read_csv
 from kinesphere.io.csv import write_csv as write_csv
 from kinesphere.io.edits_toml import read_edits as read_edits
 from kinesphere.io.edits_toml import write_edits as write_edits
+from kinesphere.io.joint_points import recording_of_joints as recording_of_joints
 from kinesphere.io.limbs_csv import write_limbs as write_limbs
 from kinesphere.io.model_json import read_model as read_model
 from kinesphere.io.model_json import write_model as write_model
@@ -20,11 +24,15 @@ from kinesphere.io.opensim import write_osim as write_osim
 from kinesphere.io.opensim_motion import write_mot as write_mot
 from kinesphere.io.parameters_csv import read_parameters as read_parameters
 from kinesphere.io.parameters_csv import write_parameters as write_parameters
+from kinesphere.io.parts_toml import read_parts as read_parts
 from kinesphere.io.registry import Format as Format
 from kinesphere.io.registry import known_formats as known_formats
 from kinesphere.io.registry import read as read
 from kinesphere.io.registry import register as register
 from kinesphere.io.registry import write as write
+from kinesphere.io.rigs import read_rig as read_rig
+from kinesphere.io.rigs import rig_format as rig_format
+from kinesphere.io.rigs import write_on_rig as write_on_rig
 from kinesphere.io.segments import read_segments as read_segments
 from kinesphere.io.skeleton_json import read_skeleton as read_skeleton
 from kinesphere.io.skeleton_json import write_skeleton as write_skeleton

@@ -18,16 +18,14 @@ from kinesphere.errors import BadSetting
 from kinesphere.geometry.euler import continuous_angles, euler_angles
 from kinesphere.geometry.rotations import rotation_about
 from kinesphere.io.atomic import replacing
+from kinesphere.io.bvh_names import NAMINGS, renamed
+from kinesphere.io.bvh_settings import ORDERS
 from kinesphere.io.holding import held
 from kinesphere.io.tables import format_rows
 from kinesphere.io.units import metres_from_unit
 
 RestPose: TypeAlias = Literal["standing", "t-pose"]
 
-ROOT_ORDER = "yxz"
-"""Heading, pitch, roll: singular only where the root faces straight up or down."""
-JOINT_ORDER = "zyx"
-"""Singular at ±90° of turning about the vertical; knees and hips bend about x past 90° freely."""
 BVH_FROM_BODY = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
 """Body axes are x front, y up, z right; the file's rest pose has z front, y up, x left."""
 _STUB = 0.05
@@ -48,7 +46,12 @@ class _Node(NamedTuple):
 
 
 def write_bvh(
-    motion: Motion, path: str | Path, unit: str = "cm", rest: RestPose = "standing"
+    motion: Motion,
+    path: str | Path,
+    unit: str = "cm",
+    rest: RestPose = "standing",
+    names: str = "kinesphere",
+    channels: str = "smooth",
 ) -> None:
     """Write a motion with normalized limb frames as BVH.
 
@@ -63,18 +66,29 @@ def write_bvh(
     unit
         Of lengths; BVH cannot name it. Centimetres are the custom.
     rest
-        ``"standing"`` with hanging arms, or ``"t-pose"`` with arms raised to the sides.
+        ``"standing"`` with hanging arms, or ``"t-pose"`` with arms raised to the sides. Limbs of a
+        motion that was read from BVH or AMC keep the rest pose of their file.
+    names
+        ``"kinesphere"``, ``"unity"`` or ``"motionbuilder"``: what limbs are called.
+    channels
+        ``"smooth"``, ``"zxy"`` or ``"zyx"``: the order of rotations, as `BvhSettings` has it.
 
     Raises
     ------
     BadSetting
-        If unit or rest pose is unknown.
+        If unit, rest pose, names or channels are unknown.
     """
     metres = metres_from_unit(unit)
     if metres is None:
         raise BadSetting(f"unit {unit!r} is unknown; cm, m and mm are some that are known")
-    if rest not in ("standing", "t-pose"):
-        raise BadSetting(f"rest is {rest!r}; known are standing, t-pose")
+    for what, value, known in (
+        ("rest", rest, ("standing", "t-pose")),
+        ("names", names, tuple(NAMINGS)),
+        ("channels", channels, tuple(ORDERS)),
+    ):
+        if value not in known:
+            raise BadSetting(f"{what} is {value!r}; known are {', '.join(known)}")
+    orders = ORDERS[channels]
     skeleton = motion.skeleton
     body_from_limb = np.stack([_rest_rotation(limb, rest) for limb in skeleton.limbs])
     nodes = _nodes(skeleton, body_from_limb)
@@ -82,18 +96,19 @@ def write_bvh(
     at_pivots = motion.rotations[:, 0] @ nodes[0].pivot + motion.origins[:, 0]
     root_place = held(at_pivots, np.zeros(3)) / metres
     turns = [
-        np.degrees(continuous_angles(euler_angles(local, JOINT_ORDER if i else ROOT_ORDER)))
+        np.degrees(continuous_angles(euler_angles(local, orders[min(i, 1)])))
         for i, local in enumerate(_local_rotations(motion, body_from_limb))
     ]
     columns = [root_place, *(turns[i] for i in _depth_first(skeleton))]
 
+    called = renamed(skeleton.limb_names, names)  # type: ignore[arg-type]  # checked above
     places = [
-        (node.offset @ BVH_FROM_BODY.T / metres, node.end @ BVH_FROM_BODY.T / metres)
-        for node in nodes
+        (name, node.offset @ BVH_FROM_BODY.T / metres, node.end @ BVH_FROM_BODY.T / metres)
+        for name, node in zip(called, nodes, strict=True)
     ]
     head = [
         "HIERARCHY",
-        *_hierarchy(skeleton, places),
+        *_hierarchy(skeleton, places, orders),
         "MOTION",
         f"Frames: {motion.n_frames}",
         f"Frame Time: {1 / motion.rate:.10f}",
@@ -154,18 +169,21 @@ def _depth_first(skeleton: Skeleton, limb: int = 0) -> list[int]:
 
 
 def _hierarchy(
-    skeleton: Skeleton, places: Sequence[tuple[Array, Array]], limb: int = 0
+    skeleton: Skeleton,
+    places: Sequence[tuple[str, Array, Array]],
+    orders: tuple[str, str],
+    limb: int = 0,
 ) -> list[str]:
-    offset, end = places[limb]
-    name = re.sub(r"\s", "_", skeleton.limb_names[limb])
-    order = JOINT_ORDER if limb else ROOT_ORDER
+    name, offset, end = places[limb]
+    name = re.sub(r"\s", "_", name)
+    order = orders[min(limb, 1)]
     channels = [f"{letter.upper()}rotation" for letter in order]
     if not limb:
         channels = ["Xposition", "Yposition", "Zposition", *channels]
     inner = [f"OFFSET {_numbers(offset)}", f"CHANNELS {len(channels)} {' '.join(channels)}"]
     children = np.flatnonzero(skeleton.parents == limb)
     for child in children:
-        inner += _hierarchy(skeleton, places, int(child))
+        inner += _hierarchy(skeleton, places, orders, int(child))
     if not len(children):
         inner += ["End Site", "{", f"\tOFFSET {_numbers(end)}", "}"]
     kind = "JOINT" if limb else "ROOT"

@@ -49,6 +49,28 @@ def _is_solution(folder: Path) -> bool:
     return (folder / "solution.npz").is_file()
 
 
+def _is_bvh(head: bytes) -> bool:
+    return _text(head)[:9].upper() == b"HIERARCHY"
+
+
+def _is_gltf(head: bytes) -> bool:
+    return head.startswith(b"glTF") or (_text(head).startswith(b"{") and b'"asset"' in head)
+
+
+def _is_asf(head: bytes) -> bool:
+    return _has_section(head, b":version", b":units", b":root", b":bonedata")
+
+
+def _is_amc(head: bytes) -> bool:
+    return _has_section(head, b":fully-specified", b":degrees", b":radians")
+
+
+def _has_section(head: bytes, *names: bytes) -> bool:
+    lines = [line.strip().lower() for line in head.splitlines()]
+    told = next((line for line in lines if line and not line.startswith(b"#")), b"")
+    return told.startswith(names)
+
+
 def _text(head: bytes) -> bytes:
     return head.removeprefix(b"\xef\xbb\xbf").lstrip()
 
@@ -69,6 +91,13 @@ register(
         recognises=_is_parameters,
         reader="kinesphere.io.parameters_csv:read_parameters",
         writers={"Parameters": "kinesphere.io.parameters_csv:write_parameters"},
+    )
+)
+register(
+    Format(
+        name="clinical angle table",
+        suffixes=(".csv",),
+        writers={"IsbAngles": "kinesphere.io.isb_csv:write_isb_angles"},
     )
 )
 register(
@@ -102,7 +131,37 @@ register(
     Format(
         name="BVH",
         suffixes=(".bvh",),
+        recognises=_is_bvh,
+        reader="kinesphere.io.bvh_motion:read_bvh",
         writers={"Motion": "kinesphere.io.bvh:write_bvh"},
+    )
+)
+register(
+    Format(
+        name="Acclaim motion",
+        suffixes=(".amc",),
+        recognises=_is_amc,
+        reader="kinesphere.io.amc:read_amc",
+    )
+)
+register(
+    Format(
+        name="Acclaim skeleton",
+        suffixes=(".asf",),
+        recognises=_is_asf,
+        reader="kinesphere.io.asf:read_asf",
+    )
+)
+register(
+    Format(
+        name="glTF",
+        suffixes=(".glb", ".gltf"),
+        recognises=_is_gltf,
+        reader="kinesphere.io.rig_gltf:read_gltf_skeleton",
+        writers={
+            "Motion": "kinesphere.io.gltf:write_gltf",
+            "Solution": "kinesphere.io.gltf:write_solution_gltf",
+        },
     )
 )
 register(

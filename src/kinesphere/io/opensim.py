@@ -9,11 +9,17 @@ from xml.etree.ElementTree import Element, ElementTree, SubElement, indent
 
 import numpy as np
 
-from kinesphere import __version__
 from kinesphere.data import Array, Limb, Skeleton
+from kinesphere.data.conventions import CONVENTIONS, WRITTEN_BY
 from kinesphere.geometry.euler import euler_angles
 from kinesphere.io.atomic import replacing
-from kinesphere.io.opensim_joints import Turn, joint_turns, opensim_name, root_coordinates
+from kinesphere.io.opensim_joints import (
+    COORDINATES,
+    Turn,
+    joint_turns,
+    opensim_name,
+    root_coordinates,
+)
 
 NOMINAL_MASS = 1.0
 """kg of every limb."""
@@ -40,7 +46,8 @@ def write_osim(skeleton: Skeleton, path: str | Path) -> None:
     """
     document = Element("OpenSimDocument", Version="40000")
     model = SubElement(document, "Model", name="kinesphere")
-    _text(model, "credits", f"Kinesphere {__version__}; masses and inertias are nominal")
+    said = (WRITTEN_BY + "; masses and inertias are nominal.", *CONVENTIONS.values(), COORDINATES)
+    _text(model, "credits", " ".join(said))
     _text(model, "length_units", "meters")
     _text(model, "force_units", "N")
     _text(model, "gravity", "0 -9.80665 0")

@@ -26,6 +26,10 @@ LEAST_SINE = 0.05
 ROOT_ROTATIONS = ("rx", "ry", "rz")
 """FreeJoint: body-fixed rotations about x, y, z, in this order."""
 ROOT_TRANSLATIONS = ("tx", "ty", "tz")
+COORDINATES = (
+    "Coordinates: JOINT_axis1, 2, 3 and JOINT_twist are those angles; ROOT_rx, ry, rz body-fixed "
+    "turns about x, y, z, ROOT_tx, ty, tz metres."
+)
 
 
 class Turn(NamedTuple):

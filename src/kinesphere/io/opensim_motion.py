@@ -5,10 +5,11 @@ from pathlib import Path
 import numpy as np
 
 from kinesphere.data import Array, Parameters
+from kinesphere.data.conventions import POSE, WRITTEN_BY
 from kinesphere.geometry.euler import continuous_angles, euler_angles
 from kinesphere.io.atomic import replacing
 from kinesphere.io.holding import held
-from kinesphere.io.opensim_joints import joint_coordinates, root_coordinates
+from kinesphere.io.opensim_joints import COORDINATES, joint_coordinates, root_coordinates
 from kinesphere.io.tables import format_rows
 
 
@@ -39,6 +40,11 @@ def write_mot(parameters: Parameters, path: str | Path) -> None:
         f"nRows={parameters.n_frames}",
         f"nColumns={len(names)}",
         "inDegrees=yes",
+        "Units are S.I. units (second, meters, Newtons, ...)",
+        "Angles are in degrees.",
+        f"{WRITTEN_BY}: coordinates of the .osim model beside it. {POSE} {COORDINATES}".replace(
+            "=", "is"
+        ),
         "endheader",
         "\t".join(names),
     ]

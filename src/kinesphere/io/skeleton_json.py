@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from kinesphere.data import AxesSource, Joint, Limb, Observability, Skeleton, Step
+from kinesphere.data.conventions import CONVENTIONS
 from kinesphere.data.validation import first_problem
 from kinesphere.errors import BadModel, UnreadableFile
 from kinesphere.io.json_files import read_json, write_json
@@ -64,6 +65,7 @@ def skeleton_to_dict(skeleton: Skeleton) -> dict[str, Any]:
     """Return what ``skeleton.json`` holds; arrays are still arrays and NaN still NaN."""
     return {
         "format": SKELETON_FORMAT,
+        "conventions": CONVENTIONS,
         "limbs": [
             {
                 "name": limb.name,

@@ -1,16 +1,21 @@
 """A solved folder: everything one run found out, in the files that others use."""
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
 
 from kinesphere.data import Recording, Solution
+from kinesphere.data.isb import isb_angles
 from kinesphere.errors import BadSetting, UnreadableFile
 from kinesphere.io.atomic import check_directory_place, replacing_directory
 from kinesphere.io.bvh import write_bvh
+from kinesphere.io.bvh_settings import BvhSettings
 from kinesphere.io.c3d import read_c3d, write_c3d
+from kinesphere.io.gltf import write_solution_gltf
+from kinesphere.io.isb_csv import write_isb_angles
+from kinesphere.io.joint_points import with_joints, without_notes
 from kinesphere.io.opensim import write_osim
 from kinesphere.io.opensim_joints import opensim_name
 from kinesphere.io.opensim_motion import write_mot
@@ -22,11 +27,14 @@ from kinesphere.io.trc import write_trc
 
 ARRAYS = "solution.npz"
 RECORDING = "recording.c3d"
+MOTION_GLB = "motion.glb"
+"""Older folders are whole without it."""
 FILES = (
     RECORDING,
     "skeleton.json",
     "parameters.csv",
     "motion.bvh",
+    MOTION_GLB,
     "motion.trc",
     "motion.mot",
     "motion.osim",
@@ -34,7 +42,9 @@ FILES = (
     "summary.json",
 )
 """What ``write_solution`` writes by itself."""
-_BESIDE = ("report.html", ".DS_Store", "Thumbs.db", "desktop.ini")
+ISB_ANGLES = "isb_angles.csv"
+"""Written where joints have names; older folders are whole without it."""
+_BESIDE = (ISB_ANGLES, "report.html", ".DS_Store", "Thumbs.db", "desktop.ini")
 """What may stand beside them: the report, and what file managers leave wherever they look."""
 _C3D = "c3d"
 
@@ -43,6 +53,7 @@ def write_solution(
     solution: Solution,
     directory: str | Path,
     extra: Mapping[str, str | bytes] | None = None,
+    bvh: BvhSettings | None = None,
 ) -> None:
     """Write a solved folder; it appears whole or not at all.
 
@@ -52,6 +63,8 @@ def write_solution(
         A new or empty folder, or a solved one, which is replaced.
     extra
         Further files: name → text or bytes (``{"report.html": page}``).
+    bvh
+        What ``motion.bvh`` is like.
 
     Raises
     ------
@@ -60,16 +73,19 @@ def write_solution(
     """
     extra = dict(extra or {})
     for name in extra:
-        if name in ("", "..") or Path(name).name != name or name in FILES:
+        if name in ("", "..") or Path(name).name != name or name in (*FILES, ISB_ANGLES):
             raise BadSetting(f"{name!r} cannot be added: a plain name was expected, and a new one")
     recording, skeleton = solution.recording, solution.skeleton
     details = {k: None if k == _C3D else v for k, v in recording.details.items()}
     bare = replace(solution, recording=replace(recording, details=details))
     with replacing_directory(directory, _only(extra)) as folder:
-        write_c3d(_with_joint_centres(solution), folder / RECORDING)
+        write_c3d(with_joints(solution), folder / RECORDING)
         write_skeleton(skeleton, folder / "skeleton.json")
         write_parameters(solution.parameters, folder / "parameters.csv")
-        write_bvh(solution.motion, folder / "motion.bvh")
+        if (clinical := isb_angles(solution.motion, skeleton)).joints:
+            write_isb_angles(clinical, folder / ISB_ANGLES)
+        write_bvh(solution.motion, folder / "motion.bvh", **asdict(bvh or BvhSettings()))
+        write_solution_gltf(solution, folder / MOTION_GLB)
         write_trc(_model_markers(solution), folder / "motion.trc")
         write_mot(solution.parameters, folder / "motion.mot")
         write_osim(skeleton, folder / "motion.osim")
@@ -114,37 +130,16 @@ def read_solution(directory: str | Path) -> Solution:
         raise UnreadableFile(f"{directory} is {found}; a solved folder was expected")
     if not (directory / ARRAYS).is_file():
         raise UnreadableFile(f"{directory} holds no {ARRAYS}: it is no solved folder")
-    if missing := [name for name in FILES if not (directory / name).is_file()]:
+    wanted = (name for name in FILES if name != MOTION_GLB)
+    if missing := [name for name in wanted if not (directory / name).is_file()]:
         raise UnreadableFile(f"{directory} is not whole: {', '.join(missing)} missing")
     solution = read_solution_arrays(directory / ARRAYS)
     recording = solution.recording
     if _C3D not in recording.details:
         return solution
-    details = {**recording.details, _C3D: read_c3d(directory / RECORDING).details[_C3D]}
+    source = read_c3d(directory / RECORDING).details[_C3D]
+    details = {**recording.details, _C3D: without_notes(source)}
     return replace(solution, recording=replace(recording, details=details))
-
-
-def _with_joint_centres(solution: Solution) -> Recording:
-    """Return the recording with the joint centres of the motion among its points."""
-    recording = solution.recording
-    names = tuple(
-        name if name not in recording.labels else f"{name}_centre"
-        for name in solution.skeleton.joint_names
-    )
-    centres = solution.motion.joint_centres()
-    residuals = recording.residuals
-    if residuals is not None:
-        residuals = np.hstack([residuals, np.full(centres.shape[:2], np.nan)])
-    sure = recording.confidence
-    if sure is not None:
-        sure = np.concatenate([sure, np.full(len(names), np.nan)])
-    return replace(
-        recording,
-        markers=np.hstack([recording.markers, centres]),
-        labels=recording.labels + names,
-        residuals=residuals,
-        confidence=sure,
-    )
 
 
 def _model_markers(solution: Solution) -> Recording:

@@ -27,6 +27,7 @@ from kinesphere.data import (
     Skeleton,
     Solution,
     Step,
+    Surface,
 )
 from kinesphere.errors import KinesphereError, UnreadableFile
 from kinesphere.io.atomic import replacing
@@ -37,7 +38,7 @@ _KNOWN = {
     kind.__name__: kind
     for kind in (
         *(Analog, Event, Joint, Limb, Motion, Output),
-        *(Parameters, Recording, Skeleton, Solution, Step),
+        *(Parameters, Recording, Skeleton, Solution, Step, Surface),
     )
 }
 """Nothing else is ever built from a file."""

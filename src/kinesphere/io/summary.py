@@ -3,8 +3,12 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from kinesphere import __version__
 from kinesphere.data import Solution
+from kinesphere.data.conventions import CONVENTIONS
+from kinesphere.data.isb import GIMBAL_MARGIN_DEG, isb_angles
 from kinesphere.io.json_files import write_json
 
 SUMMARY_FORMAT = "kinesphere-summary-1"
@@ -16,6 +20,7 @@ def summary_of(solution: Solution) -> dict[str, Any]:
     return {
         "format": SUMMARY_FORMAT,
         "version": __version__,
+        "conventions": CONVENTIONS,
         "model": solution.model_name,
         "n_frames": motion.n_frames,
         "rate_hz": motion.rate,
@@ -37,6 +42,29 @@ def summary_of(solution: Solution) -> dict[str, Any]:
             for step in solution.history
         ],
         "seconds": solution.seconds,
+        "isb_angles": _clinical(solution),
+    }
+
+
+def _clinical(solution: Solution) -> dict[str, Any]:
+    """Return how the clinical angles of each joint are read, and how often they are in doubt."""
+    found = isb_angles(solution.motion, solution.skeleton)
+    seen = np.isfinite(found.margins)
+    return {
+        "gimbal_margin_deg": GIMBAL_MARGIN_DEG,
+        "joints": {
+            joint.name: {
+                "sequence": joint.convention.sequence,
+                "angles": joint.angle_names,
+                "source": joint.convention.source,
+                "turned_deg": float(np.rad2deg(joint.turn)),
+                "turned_by": joint.turn_from,
+                "near_gimbal": float(found.gimbal[seen[:, j], j].mean())
+                if seen[:, j].any()
+                else None,
+            }
+            for j, joint in enumerate(found.joints)
+        },
     }
 
 

@@ -5,6 +5,7 @@ from kinesphere.pipeline.choice import model_for as model_for
 from kinesphere.pipeline.line import STAGES as STAGES
 from kinesphere.pipeline.line import Progress as Progress
 from kinesphere.pipeline.line import solve as solve
+from kinesphere.pipeline.retargeting import retarget as retarget
 from kinesphere.pipeline.settings import Settings as Settings
 from kinesphere.pipeline.settings import changes_from_text as changes_from_text
 from kinesphere.pipeline.settings import merged as merged

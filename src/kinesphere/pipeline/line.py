@@ -16,13 +16,14 @@ from kinesphere.pipeline.choice import MOTION_ALONE, model_for, with_labels
 from kinesphere.pipeline.doubts import calibration_doubts, with_checks
 from kinesphere.pipeline.motion_alone import discovered, normalized_somehow
 from kinesphere.pipeline.settings import Settings
+from kinesphere.pipeline.surface import surface_for
 from kinesphere.quality import orient
 from kinesphere.skeleton import fill_markers, fit_skeleton
 
 Progress: TypeAlias = Callable[[str, int, int], None]
 """Called with the stage about to run, its number from 0, and how many there are."""
 
-STAGES = ("labelling", "orientation", "skeleton", "normalization", "parameterization")
+STAGES = ("labelling", "orientation", "skeleton", "normalization", "parameterization", "surface")
 """In this order; from motion alone the first one is ``discovery`` instead."""
 
 
@@ -107,12 +108,16 @@ def solve(
         parameters = parameterize(
             motion, settings.parameterization, calibration=calibration, reuse=reuse
         )
+    with clock.stage("surface"):
+        surface, step = surface_for(motion, settings.surface)
+        parameters = replace(parameters, history=(*parameters.history, step))
     return Solution(
         recording=oriented,
         motion=motion,
         parameters=parameters,
         model_name=chosen.name,
         seconds=clock.seconds,
+        surface=surface,
     )
 
 

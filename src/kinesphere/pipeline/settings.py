@@ -7,7 +7,9 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, get_type_hints
 
+from kinesphere.editing import RetargetSettings, SurfaceSettings
 from kinesphere.errors import BadSetting, UnreadableFile
+from kinesphere.io.bvh_settings import BvhSettings
 from kinesphere.labelling import LabellingSettings
 from kinesphere.normalization import NormalizationSettings
 from kinesphere.parameterization import ParameterizationSettings
@@ -26,6 +28,9 @@ class Settings:
     skeleton: SkeletonSettings = field(default_factory=SkeletonSettings)
     normalization: NormalizationSettings = field(default_factory=NormalizationSettings)
     parameterization: ParameterizationSettings = field(default_factory=ParameterizationSettings)
+    surface: SurfaceSettings = field(default_factory=SurfaceSettings)
+    retargeting: RetargetSettings = field(default_factory=RetargetSettings)
+    bvh: BvhSettings = field(default_factory=BvhSettings)
 
 
 def stage_settings(settings: Any) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """One self-contained page that shows what was found."""
 
+from kinesphere.report.comparison import comparison_html as comparison_html
 from kinesphere.report.labelling import labelling_html as labelling_html
 from kinesphere.report.notices import Notice as Notice
 from kinesphere.report.notices import names_of as names_of

@@ -11,6 +11,7 @@ import kinesphere
 from kinesphere.data import Solution
 from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.bodies import find_bodies
+from kinesphere.report.clinical import clinical_section
 from kinesphere.report.notices import names_of, notices
 from kinesphere.report.scene import scene_from_solution
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
@@ -46,6 +47,7 @@ def report_html(solution: Solution, title: str = "") -> str:
         limbs=limb_rows(solution),
         steps=step_cards(solution),
         bodies=bodies_section(solution),
+        clinical=clinical_section(solution),
         stride=scene["stride"],
         shown_rate=f"{scene['rate']:g}",
         style=Markup(asset("page.css")),

@@ -4,6 +4,8 @@ Only what no longer agrees is touched, so that a recording nobody changed takes 
 along as it was: spelling, order, descriptions, locks.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from kinesphere import __version__
@@ -22,6 +24,12 @@ from kinesphere.io.c3d.parameters import (
 from kinesphere.io.c3d.points import Point
 from kinesphere.io.c3d.source import Source
 
+DESCRIPTIONS = "c3d.descriptions"
+"""In ``Recording.details``: label → text, of points that no file describes yet."""
+NOTES = "c3d.notes"
+"""In ``Recording.details``: sentences for a group of our own."""
+OURS = "KINESPHERE"
+"""That group."""
 _SCREEN = {"x": ("+Y", "X"), "y": ("+X", "Y"), "z": ("+X", "Z")}
 """Up → what POINT:X_SCREEN and Y_SCREEN say of a right-handed room."""
 _TYPES = {
@@ -39,6 +47,8 @@ def renewed(recording: Recording, points: tuple[Point, ...], source: Source | No
     section = _with_points(section, recording, points, source)
     section = _with_frames(section, recording, source)
     section = _with_confidence(section, recording)
+    if notes := recording.details.get(NOTES):
+        section = section.with_texts(OURS, "CONVENTIONS", notes)
     if source is None or recording.analog is not source.analog:
         section = _with_analog(section, recording.analog, source.analog if source else None)
     return _with_events(section, recording, source)
@@ -91,24 +101,31 @@ def _with_points(
         section = section.with_parameters("POINT", floats("RATE", recording.rate))
     unchanged = source is not None and source.labels == tuple(point.label for point in points)
     if not unchanged:
-        section = _with_labels(section, points, source)
+        section = _with_labels(section, points, source, recording.details.get(DESCRIPTIONS, {}))
+        if source is not None:
+            section = _without_gone(section, {point.label for point in points}, source)
         section = _with_types(section, recording.outputs)
     return section
 
 
-def _with_labels(section: Section, points: tuple[Point, ...], source: Source | None) -> Section:
+def _with_labels(
+    section: Section,
+    points: tuple[Point, ...],
+    source: Source | None,
+    told: Mapping[str, str],
+) -> Section:
     n_old = source.layout.n_points if source else 0
     said = _filled(section.texts("POINT", "LABELS"), n_old)
     described = _filled(section.texts("POINT", "DESCRIPTIONS"), n_old)
     labels, descriptions, renamed = [], [], {}
     for point in points:
-        label, description = point.label, ""
+        label, description = point.label, told.get(point.label, "")
         if source is not None and point.origin is not None:
             if source.labels[point.origin] == label:  # the file's own, not our unique spelling
                 label = said[point.origin]
             else:
                 renamed[said[point.origin]] = label
-            description = described[point.origin]
+            description = description or described[point.origin]
         labels.append(label)
         descriptions.append(description)
     section = section.with_texts("POINT", "LABELS", (*labels, *said[n_old:]))
@@ -130,6 +147,19 @@ def _rename(section: Section, renamed: dict[str, str], labels: list[str]) -> Sec
     if uses is not None and prefixes and not any(label.startswith(prefixes) for label in labels):
         none = words("USES_PREFIXES", np.zeros(len(uses.numbers)), *uses.dims)
         section = section.with_parameters("SUBJECTS", none)
+    return section
+
+
+def _without_gone(section: Section, labels: set[str], source: Source) -> Section:
+    """Take labels of the source that are no points any more out of the typed groups."""
+    gone = set(source.labels) - labels
+    for group in section.texts("POINT", "TYPE_GROUPS")[::2]:
+        listed = section.texts("POINT", group)
+        if kept := [label for label in listed if label not in gone]:
+            if len(kept) < len(listed):
+                section = section.with_texts("POINT", group, kept)
+        elif listed:
+            section = section.without("POINT", group)
     return section
 
 
