@@ -29,6 +29,8 @@ TRIED = 5
 """Windows labelled; the one whose labels fit best, and most, counts."""
 AGREEING = 0.8
 """Share of the tracks that two windows share whose labels must agree for both to count."""
+ALONE = 0.7
+"""Evidence that a track needs which the best window does not show: its labels are checked least."""
 SUREST = 0.999
 """Confidence that one window counts at most."""
 WHOLE = 1.5
@@ -272,6 +274,7 @@ def _agreed(found: list[_Seen], state: Labelled, n_labels: int) -> tuple[Match, 
     columns = sorted({k for one in used for k in one.columns})
     ranked = np.sort(evidence[columns], axis=1)
     lead = ranked[:, -1] - (ranked[:, -2] if n_labels > 1 else 0.0)
+    lead[~np.isin(columns, best.columns) & (lead < ALONE)] = 0.0
     labels = np.where(lead > 0, evidence[columns].argmax(axis=1), -1)
     return replace(best.match, labels=labels, confidence=1 - np.exp(-lead)), columns
 
