@@ -11,6 +11,8 @@ from kinesphere.labelling.own_distances import OwnDistances, costs_of, own_dista
 FITS = (2.0, 5.5)
 """Mean square deviation up to which a piece keeps a label's distances: 1 is usual, strangers have
 6 to 9. The second is for the end, when the distances are known from all movement."""
+LONG_S = 1.0
+"""s from which on a piece is measured by the second: what lasts shortly may be there by chance."""
 CLEAR = (2.0, 1.5)
 """How much worse the next label must fit, in the same terms."""
 SWEEPS = 40
@@ -22,19 +24,19 @@ def propagate(state: Labelled, markers: Array, rate: float, fixed: set[int], *, 
     own = own_distances(state.points)
     cut_foreign(state, markers, rate, own, fixed)
     for sweep in range(SWEEPS):
-        if not _sweep(state, markers, own, fixed, late=late):
+        if not _sweep(state, markers, rate, own, fixed, late=late):
             break
         if sweep % 3 == 2:
             own = own_distances(state.points)
     own = own_distances(state.points)
     if cut_foreign(state, markers, rate, own, fixed):
         for _ in range(SWEEPS):
-            if not _sweep(state, markers, own, fixed, late=late):
+            if not _sweep(state, markers, rate, own, fixed, late=late):
                 break
 
 
 def _sweep(
-    state: Labelled, markers: Array, own: OwnDistances, fixed: set[int], *, late: bool
+    state: Labelled, markers: Array, rate: float, own: OwnDistances, fixed: set[int], *, late: bool
 ) -> bool:
     """Label all tracks that have become decidable; return whether there were any."""
     offers: list[tuple[float, float, int, int]] = []
@@ -49,7 +51,8 @@ def _sweep(
             continue
         cost = np.where(known, cost, np.inf)
         score = np.where(known, cost + width, np.inf)
-        free = np.where(taken | (cost > FITS[late]), np.inf, score)
+        limit = FITS[0] + (FITS[late] - FITS[0]) * min(1.0, len(frames) / rate / LONG_S)
+        free = np.where(taken | (cost > limit), np.inf, score)
         label = int(free.argmin())
         if not np.isfinite(free[label]):
             continue

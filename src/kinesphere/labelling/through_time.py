@@ -12,7 +12,9 @@ import numpy as np
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.labelling.labelled import Labelled, give
 from kinesphere.labelling.matching import Labeller
+from kinesphere.labelling.personal import recognise_rest
 from kinesphere.labelling.propagation import propagate
+from kinesphere.labelling.recheck import recheck
 from kinesphere.labelling.recognition import recognise_again, recognised
 from kinesphere.labelling.runs import Track, tracks_of
 
@@ -78,9 +80,14 @@ def label_through_time(
         if not before:
             return state
         propagate(state, markers, rate, fixed, late=False)
+        recheck(state, markers, fixed)
         if not recognise_again(state, markers, model, least_confidence, fixed):
             break
+    recheck(state, markers, fixed)
     propagate(state, markers, rate, fixed, late=True)
+    recheck(state, markers, fixed)
+    if model.statistics and recognise_rest(state, markers, rate, model, least_confidence):
+        propagate(state, markers, rate, fixed, late=True)
     return state
 
 
