@@ -6,7 +6,12 @@ from numpy.typing import NDArray
 from kinesphere.data import Array
 from kinesphere.labelling.cutting import cut_foreign
 from kinesphere.labelling.labelled import Labelled, frames_of, give, length_of, overlapping, take
-from kinesphere.labelling.own_distances import OwnDistances, costs_of, own_distances
+from kinesphere.labelling.own_distances import (
+    FEWEST_NEIGHBOURS,
+    OwnDistances,
+    costs_of,
+    own_distances,
+)
 
 FITS = (2.0, 5.5)
 """Mean square deviation up to which a piece keeps a label's distances: 1 is usual, strangers have
@@ -19,39 +24,65 @@ SWEEPS = 40
 """Most rounds of labelling what has become decidable."""
 
 
-def propagate(state: Labelled, markers: Array, rate: float, fixed: set[int], *, late: bool) -> None:
-    """Label by the person's own distances whatever can be, cutting what stops fitting."""
+def propagate(
+    state: Labelled,
+    markers: Array,
+    rate: float,
+    fixed: set[int],
+    kin: NDArray[np.bool_],
+    *,
+    late: bool,
+) -> None:
+    """Label by the person's own distances whatever can be, cutting what stops fitting.
+
+    Parameters
+    ----------
+    kin : (n_labels, n_labels)
+        Labels of one segment: while one of them has no distances yet, its points fit the others.
+    late
+        Whether the distances are known from all movement by now.
+    """
     own = own_distances(state.points)
     cut_foreign(state, markers, rate, own, fixed)
     for sweep in range(SWEEPS):
-        if not _sweep(state, markers, rate, own, fixed, late=late):
+        if not _sweep(state, markers, rate, own, fixed, kin, late=late):
             break
         if sweep % 3 == 2:
             own = own_distances(state.points)
     own = own_distances(state.points)
     if cut_foreign(state, markers, rate, own, fixed):
         for _ in range(SWEEPS):
-            if not _sweep(state, markers, rate, own, fixed, late=late):
+            if not _sweep(state, markers, rate, own, fixed, kin, late=late):
                 break
 
 
 def _sweep(
-    state: Labelled, markers: Array, rate: float, own: OwnDistances, fixed: set[int], *, late: bool
+    state: Labelled,
+    markers: Array,
+    rate: float,
+    own: OwnDistances,
+    fixed: set[int],
+    kin: NDArray[np.bool_],
+    *,
+    late: bool,
 ) -> bool:
     """Label all tracks that have become decidable; return whether there were any."""
     offers: list[tuple[float, float, int, int]] = []
+    unknown = np.isfinite(own.mean).sum(axis=1) <= FEWEST_NEIGHBOURS
+    settled = ~(kin & unknown).any(axis=1) & late
     for k, track in enumerate(state.tracks):
         if state.labels[k] >= 0:
             continue
         frames, columns = frames_of(track)
         cost, width = costs_of(markers[frames, columns], frames, state.points, own)
+        long = min(1.0, len(frames) / rate / LONG_S)
         taken = _blocked(state, k, frames, fixed)
         known = np.isfinite(cost)
         if not known.any():
             continue
         cost = np.where(known, cost, np.inf)
         score = np.where(known, cost + width, np.inf)
-        limit = FITS[0] + (FITS[late] - FITS[0]) * min(1.0, len(frames) / rate / LONG_S)
+        limit = np.where(settled, FITS[0] + (FITS[1] - FITS[0]) * long, FITS[0])
         free = np.where(taken | (cost > limit), np.inf, score)
         label = int(free.argmin())
         if not np.isfinite(free[label]):

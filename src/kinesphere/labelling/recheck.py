@@ -17,7 +17,7 @@ CLEAR = 2.0
 
 
 def recheck(state: Labelled, markers: Array, fixed: set[int]) -> int:
-    """Give tracks the label that fits them better than theirs does without them; return how many."""
+    """Give tracks the label that fits better than theirs without them does; return how many."""
     own = own_distances(state.points)
     offers = []
     for k, of in enumerate(state.labels):

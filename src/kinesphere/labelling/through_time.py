@@ -8,6 +8,7 @@ and forwards in time. A track that stops fitting its label is cut.
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.labelling.labelled import Labelled, give
@@ -75,20 +76,32 @@ def label_through_time(
         if label >= 0 and sure >= least_confidence and state.labels[k] < 0:
             give(state, markers, int(k), int(label), float(sure))
     fixed = {k for k, track in enumerate(tracks) if track[0].column in seeds}
+    kin = _kin(model)
     for _ in range(ROUNDS):
         before = sum(label >= 0 for label in state.labels)
         if not before:
             return state
-        propagate(state, markers, rate, fixed, late=False)
+        propagate(state, markers, rate, fixed, kin, late=False)
         recheck(state, markers, fixed)
         if not recognise_again(state, markers, model, least_confidence, fixed):
             break
     recheck(state, markers, fixed)
-    propagate(state, markers, rate, fixed, late=True)
-    recheck(state, markers, fixed)
-    if model.statistics and recognise_rest(state, markers, rate, model, least_confidence):
-        propagate(state, markers, rate, fixed, late=True)
+    for _ in range(ROUNDS):
+        propagate(state, markers, rate, fixed, kin, late=True)
+        changed = recheck(state, markers, fixed)
+        given = recognise_rest(state, markers, rate, model, least_confidence)
+        if not (changed or given):
+            break
     return state
+
+
+def _kin(model: TopologicalModel) -> NDArray[np.bool_]:
+    """Return which labels are of one segment, the shared ones included, (n_labels, n_labels)."""
+    kin = np.eye(len(model.labels), dtype=bool)
+    for segment in model.segments:
+        own = [model.labels.index(x) for x in (*segment.markers, *segment.shared)]
+        kin[np.ix_(own, own)] = True
+    return kin
 
 
 def _tracks(
