@@ -8,7 +8,6 @@ and forwards in time. A track that stops fitting its label is cut.
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.labelling.labelled import Labelled, give
@@ -18,6 +17,7 @@ from kinesphere.labelling.propagation import propagate
 from kinesphere.labelling.recheck import recheck
 from kinesphere.labelling.recognition import recognise_again, recognised
 from kinesphere.labelling.runs import Track, tracks_of
+from kinesphere.labelling.template import of_one_segment
 
 ROUNDS = 4
 """Most times the body is recognised anew with what has been labelled so far."""
@@ -76,7 +76,7 @@ def label_through_time(
         if label >= 0 and sure >= least_confidence and state.labels[k] < 0:
             give(state, markers, int(k), int(label), float(sure))
     fixed = {k for k, track in enumerate(tracks) if track[0].column in seeds}
-    kin = _kin(model)
+    kin = of_one_segment(model, model.labels)
     for _ in range(ROUNDS):
         before = sum(label >= 0 for label in state.labels)
         if not before:
@@ -93,15 +93,6 @@ def label_through_time(
         if not (changed or given):
             break
     return state
-
-
-def _kin(model: TopologicalModel) -> NDArray[np.bool_]:
-    """Return which labels are of one segment, the shared ones included, (n_labels, n_labels)."""
-    kin = np.eye(len(model.labels), dtype=bool)
-    for segment in model.segments:
-        own = [model.labels.index(x) for x in (*segment.markers, *segment.shared)]
-        kin[np.ix_(own, own)] = True
-    return kin
 
 
 def _tracks(
