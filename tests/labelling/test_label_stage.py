@@ -166,6 +166,23 @@ def test_pieces_hidden_markers_and_ghosts(legs, rng):
     assert right >= 0.9 * there
 
 
+def test_the_order_of_pieces_and_ghosts_beside_a_whole_recording_change_no_label(legs, rng):
+    model, recording = legs
+    n = recording.n_frames
+    ghosts = np.full((n, 40, 3), np.nan)
+    for k in range(40):
+        start = int(rng.integers(n - 15))
+        ghosts[start : start + 15, k] = rng.uniform(-1, 2, 3)
+    crowd = np.concatenate([recording.markers, ghosts], axis=1)
+    found = []
+    for _ in range(2):
+        order = rng.permutation(crowd.shape[1])
+        names = tuple(f"*{i}" for i in range(crowd.shape[1]))
+        found.append(label(Recording(crowd[:, order], names, recording.rate), model))
+        assert_labelled_as(found[-1], recording)
+    assert_array_equal(found[0].confidence[:18], found[1].confidence[:18])
+
+
 def test_no_frames_are_refused(legs):
     model, recording = legs
     with pytest.raises(BadRecording, match="nothing to label"):

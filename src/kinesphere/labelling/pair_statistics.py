@@ -9,7 +9,7 @@ References
    Eur. J. Oper. Res. 46(1), 93-100.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +19,7 @@ from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.pair_distances import pair_distances
 from kinesphere.geometry.signature import FRAMES, Signature, evenly_spread, scale_of, signature
 from kinesphere.labelling.blocks import Moves, block_moves, twins
+from kinesphere.labelling.bodies import bodies_of
 from kinesphere.labelling.matching import Match, nothing
 from kinesphere.labelling.problem import Labels, Problem, problem_of
 from kinesphere.labelling.search import (
@@ -98,6 +99,9 @@ def match_pair_statistics(
     if seen.any(axis=1).sum() < 2:
         return nothing(n_points, "one frame alone shows no motion to recognise markers by")
     kept = np.flatnonzero(seen.sum(axis=0) >= 2)
+    bodies = bodies_of(points[:, kept], layout.template.n) if start is None else []
+    if bodies:
+        return _best_of([kept[body] for body in bodies], points, model)
     if start is None:
         kept = _plausible(points, seen, layout.template.n)
     if len(kept) < LEAST_LABELS:
@@ -116,6 +120,16 @@ def match_pair_statistics(
         back[layout.into] = np.arange(layout.template.n)
         solved = _continued(found, layout, back[start[kept]])
     return _match(solved, layout, kept, n_points, model.name)
+
+
+def _best_of(bodies: list[NDArray[np.intp]], points: Array, model: TopologicalModel) -> Match:
+    """Return the labels of the body that the model fits best; the others get none."""
+    found = [match_pair_statistics(points[:, body], model) for body in bodies]
+    best = max(range(len(found)), key=lambda k: (not found[k].note, found[k].fit, -k))
+    labels = np.full(points.shape[1], -1, dtype=np.int64)
+    sure = np.zeros(points.shape[1])
+    labels[bodies[best]], sure[bodies[best]] = found[best].labels, found[best].confidence
+    return replace(found[best], labels=labels, confidence=sure, bodies=len(bodies))
 
 
 def _match(

@@ -47,7 +47,7 @@ def recognised(
         return nothing(0, "no marker is ever seen"), []
     long = lengths >= COVERED * n_frames
     whole = len(lengths) <= WHOLE * n_labels + 4 and 2 * long.sum() >= min(n_labels, len(lengths))
-    stretches = [] if long.all() else windows_of(state.tracks, n_frames, rate, n_labels)
+    stretches = [] if whole and long.all() else windows_of(state.tracks, n_frames, rate, n_labels)
     if whole:
         stretches.append((0, n_frames, list(range(len(state.tracks)))))
     found: list[_Seen] = []
@@ -81,12 +81,12 @@ def _agreed(found: list[_Seen], state: Labelled, n_labels: int) -> tuple[Match, 
     used = []
     for one in found:
         given = one.match.labels >= 0
-        columns, labels = np.array(one.columns, dtype=np.intp)[given], one.match.labels[given]
-        held = evidence[columns].max(axis=1) > 0
-        same = evidence[columns].argmax(axis=1) == labels
+        told, labels = np.array(one.columns, dtype=np.intp)[given], one.match.labels[given]
+        held = evidence[told].max(axis=1) > 0
+        same = evidence[told].argmax(axis=1) == labels
         if one is not best and (not held.any() or same[held].mean() < AGREEING):
             continue
-        evidence[columns, labels] -= np.log1p(-np.minimum(one.match.confidence[given], SUREST))
+        evidence[told, labels] -= np.log1p(-np.minimum(one.match.confidence[given], SUREST))
         used.append(one)
     state.windows_s += sorted(one.window_s for one in used)
     columns = sorted({k for one in used for k in one.columns})

@@ -66,6 +66,11 @@ def label_through_time(
     state.fit = match.fit
     if match.note:
         state.notes.append(match.note)
+    if match.bodies > 1:
+        state.notes.append(
+            f"{match.bodies} bodies are in the volume; the one that model {model.name} fits best "
+            "is labelled"
+        )
     order = np.argsort(-match.confidence, kind="stable")
     for k, label, sure in zip(
         np.array(columns, dtype=np.intp)[order],
