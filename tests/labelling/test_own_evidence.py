@@ -20,7 +20,7 @@ N, CUT = 300, 150
 
 def labelled(markers, tracks, labels):
     """Return work in progress in which these tracks bear these labels."""
-    n = markers.shape[1]
+    n = max(labels) + 1
     state = Labelled(
         np.full((len(markers), n, 3), np.nan), list(tracks), [-1] * len(tracks), [0.0] * len(tracks)
     )
@@ -115,6 +115,31 @@ class TestRest:
         later = [(track[0].column, of) for track, of in zip(tracks, state.labels, strict=True)][18:]
         assert all(of in (-1, column) for column, of in later)
         assert sum(of >= 0 for _, of in later) >= len(loose) - 1
+
+    @compiled
+    def test_beside_labels_that_contradict_nothing_is_given(self, legs):
+        model, recording = legs
+        at = model.labels.index
+        one, other, loose, cut, n = at("LTOE"), at("RTOE"), at("LTHI"), 1200, 1350
+        early = [(Run(i, 0, cut if i in (one, other, loose) else n),) for i in range(18)]
+        later = [(Run(i, cut, n),) for i in (one, other, loose)]
+        for labels, given in (([one, other], True), ([other, one], False)):
+            state = labelled(recording.markers[:n], [*early, *later], [*range(18), *labels, -1])
+            found = recognise_rest(state, recording.markers[:n], recording.rate, model, 0.1)
+            assert found == given
+            assert state.labels[-1] == (loose if given else -1)
+
+    @compiled
+    def test_a_point_that_hangs_from_the_body_is_no_marker(self, legs):
+        model, recording = legs
+        markers = recording.markers[:1350]
+        thigh, hip, cut = model.labels.index("LTHI"), model.labels.index("LFWT"), 1200
+        # a wallet where the thigh's marker might be
+        point = markers[:, hip] + (markers[0, thigh] - markers[0, hip]) * 0.8
+        markers = np.concatenate([markers, point[:, None]], axis=1)
+        tracks = [(Run(i, 0, cut if i == thigh else 1350),) for i in range(18)]
+        state = labelled(markers[:, :], [*tracks, (Run(18, cut, 1350),)], [*range(18), -1])
+        assert not recognise_rest(state, markers, recording.rate, model, 0.1)
 
     @compiled
     def test_what_is_left_of_no_marker_stays_so(self, legs, rng):

@@ -112,6 +112,9 @@ class TestBodies:
         ghosts = np.cumsum(rng.normal(scale=0.05, size=(200, 25, 3)), axis=0)
         assert bodies_of(np.concatenate([body, ghosts], axis=1), 18) == []
 
+    def test_a_body_is_not_two_legs(self, legs):
+        assert bodies_of(legs[1].markers[:800], 10) == []
+
     @compiled
     def test_labels_go_to_one_of_two(self, legs, rng):
         model, recording = legs
