@@ -26,7 +26,7 @@ check: $(READY)  ## style, types, and which room may import which
 	$(BIN)/lint-imports
 
 bench: $(READY)  ## accuracy and speed, written to docs/results and benchmarks/results
-	@missed=0; for one in accuracy accuracy.real accuracy.vendor_angles accuracy.bodies accuracy.labels accuracy.mesh accuracy.retargeting axes speed; do $(BIN)/python -m benchmarks.$$one || missed=1; done; exit $$missed
+	@missed=0; for one in accuracy accuracy.real accuracy.vendor_angles accuracy.bodies accuracy.labels accuracy.mesh accuracy.retargeting axes speed browser; do $(BIN)/python -m benchmarks.$$one || missed=1; done; exit $$missed
 
 docs: $(READY)  ## the pages that are written by the program itself
 	$(BIN)/python -m docs.generate

@@ -42,7 +42,7 @@ _DRAW = """
     const arrays = await Promise.all(names.map((name) => unpack(scene.arrays[name])));
     const data = Object.fromEntries(names.map((name, i) => [name, arrays[i]]));
     const player = new Player(panel.querySelector("canvas"), scene, data, theme);
-    player.show = { markers: true, bones: true, axes: true, frames: false, names: false };
+    player.show = { markers: true, bones: true, mesh: true, axes: true };
     player.frame = Math.floor(scene.n_frames / scene.stride / 20);
     player.reset(0.35, 0.1);
     player.camera.distance *= 0.7;

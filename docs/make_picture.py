@@ -16,6 +16,7 @@ import numpy as np
 
 from kinesphere.data import Solution
 from kinesphere.pipeline import solve
+from kinesphere.report.page import SCRIPTS as REPORT_SCRIPTS
 from kinesphere.report.scene import scene_from_solution
 from kinesphere.synthetic import make_performance, spoil_with_noise
 
@@ -33,7 +34,7 @@ FILES = (
     ("motion.osim .mot", "OpenSim, with these axes"),
     ("summary.json", "settings, findings, warnings"),
 )
-SCRIPTS = ("unpack.js", "space.js", "figure.js", "player.js", "curves.js")
+SCRIPTS = tuple(name for name in REPORT_SCRIPTS if name not in ("heat.js", "page.js"))
 _CHROMIUM = "--headless=new --no-sandbox --disable-gpu --use-angle=swiftshader \
 --enable-unsafe-swiftshader --disable-quic --no-first-run --disable-background-networking \
 --disable-component-update --disable-sync --hide-scrollbars --virtual-time-budget=5000 \

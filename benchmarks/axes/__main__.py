@@ -6,7 +6,7 @@ import multiprocessing
 import os
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from benchmarks.axes import (
     normalization,
     segments,
     solved,
+    third_axis,
     times,
 )
 from benchmarks.axes.page import all_bars, page
@@ -40,11 +41,20 @@ def main() -> int:
     parser.add_argument(
         "--page", action="store_true", help="measure nothing, write the page of the last figures"
     )
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        default=[],
+        choices=[*SECTIONS, "times"],
+        help="measure these sections, keep the last figures of the others",
+    )
     arguments = parser.parse_args()
-    if arguments.page:
+    found: dict[str, Any] = {}
+    if arguments.page or arguments.only:
         found = json.loads(RESULTS.read_text(encoding="utf-8"))
-    else:
-        found = measured(arguments.data, arguments.jobs)
+        del found["version"], found["bars"]
+    if not arguments.page:
+        found |= measured(arguments.data, arguments.jobs, arguments.only)
         RESULTS.write_text(as_json(found), encoding="utf-8")
     text = page(found)
     print(text)
@@ -54,8 +64,8 @@ def main() -> int:
     return 1 if missed and arguments.check else 0
 
 
-def measured(data: Path, jobs: int) -> dict[str, Any]:
-    """Run every section, the times alone and last."""
+def measured(data: Path, jobs: int, only: Sequence[str] = ()) -> dict[str, Any]:
+    """Run every section, or some, the times alone and last."""
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(name, "1")
     with multiprocessing.get_context("spawn").Pool(jobs) as pool:
@@ -66,40 +76,57 @@ def measured(data: Path, jobs: int) -> dict[str, Any]:
             print(f"{name}: {time.perf_counter() - start:.0f} s", file=sys.stderr, flush=True)
             return results
 
-        found = measure(run, data)
-    found["times"] = times.run()
+        found = measure(run, data, only)
+    if "times" in (only or ("times",)):
+        found["times"] = times.run()
     return found
 
 
-def measure(run: Run, data: Path) -> dict[str, Any]:
-    """Run every section but the times."""
-    real = run("real recordings", solved.run_real, solved.real_tasks(data))
-    made = run("synthetic performances", solved.run_synthetic, solved.SYNTHETIC_TASKS)
-    usable = [r for r in real if "failure" not in r]
-    paper: dict[str, list[Any]] = {}
-    for result in (*made, *usable):
-        paper.setdefault(result["name"], []).extend(result["paper"])
-    return {
-        "paper": paper,
-        "halves": {r["name"]: r["halves"] for r in usable},
-        "vendor": {r["name"]: r["vendor"] for r in usable},
-        "skipped": {r["name"]: r["failure"] for r in real if "failure" in r},
-        "filter": filters.summary(run("filter", filters.run, filters.TASKS)),
+SECTIONS: Mapping[str, Callable[[Run, Path], dict[str, Any]]] = {
+    "solved": lambda run, data: solved.summary(
+        run("real recordings", solved.run_real, solved.real_tasks(data)),
+        run("synthetic performances", solved.run_synthetic, solved.SYNTHETIC_TASKS),
+    ),
+    "filter": lambda run, _: {"filter": filters.summary(run("filter", filters.run, filters.TASKS))},
+    "segments": lambda run, data: {
         "segments": run("segments", segments.run, segments.trials(data)),
+    },
+    "normalization": lambda run, _: {
         "normalization": normalization.summary(
             run("normalization", normalization.run, normalization.TASKS)
-        ),
+        )
+    },
+    "angles": lambda run, _: {
         "angles": angles.summary(
             run("round trip", angles.run_round_trip, angles.TRIP_TASKS),
             run("branches", angles.run_branches, angles.BRANCH_TASKS),
             run("cross-talk", angles.run_cross_talk, angles.CROSS_TASKS),
             run("reach", angles.run_reach, angles.REACH_TASKS),
             run("twist", angles.run_twist, angles.TWIST_TASKS),
-        ),
-        "axes": estimators.summary(run("axes", estimators.run, estimators.TASKS)),
-        "free": free_motion.summary(run("free motion", free_motion.run, free_motion.TASKS)),
-        "floor": floor.summary(run("floor of free motion", floor.run, floor.TASKS)),
-    }
+        )
+    },
+    "axes": lambda run, _: {
+        "axes": estimators.summary(run("axes", estimators.run, estimators.TASKS))
+    },
+    "third": lambda run, _: {
+        "third": third_axis.summary(run("third axis", third_axis.run, third_axis.TASKS))
+    },
+    "free": lambda run, _: {
+        "free": free_motion.summary(run("free motion", free_motion.run, free_motion.TASKS))
+    },
+    "floor": lambda run, _: {
+        "floor": floor.summary(run("floor of free motion", floor.run, floor.TASKS))
+    },
+}
+
+
+def measure(run: Run, data: Path, only: Sequence[str] = ()) -> dict[str, Any]:
+    """Run every section but the times, or only some."""
+    found: dict[str, Any] = {}
+    for name, section in SECTIONS.items():
+        if name in (only or SECTIONS):
+            found |= section(run, data)
+    return found
 
 
 def as_json(found: dict[str, Any]) -> str:

@@ -12,6 +12,7 @@ from benchmarks.axes import (
     papers_metrics,
     repeatability,
     segments,
+    third_axis,
     times,
     vendor,
 )
@@ -56,6 +57,7 @@ def page(found: dict[str, Any]) -> str:
             filters.page(found["filter"]),
             segments.page(found.get("segments", [])),
             estimators.page(found["axes"]),
+            third_axis.page(found.get("third", {}), found["halves"]),
             free_motion.page(found["free"], found["floor"]),
             angles.page(found["angles"]),
             normalization.page(found["normalization"]),

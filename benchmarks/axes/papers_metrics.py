@@ -191,7 +191,8 @@ sections 2, 3 and 6.
 "Summed … per axis" can mean the sum of the three or a third of it; both are given, and the angle
 of the one rotation that is left. *Tracked* is the median distance of the limb's mid point, as its
 own markers put it, from where its parent and the parameters put it: it holds what the joint comes
-apart by, which no axes can mend, and is likelier what the paper's 1.3 mm were.
+apart by, which no axes can mend, and is likelier what the paper's 1.3 mm were. A joint of three
+axes is in neither table: it reaches every pose.
 
 **Joints of two axes**, means over joints and frames
 """

@@ -41,12 +41,22 @@ def half_rows(motion: Motion, whole: Parameters) -> list[dict[str, Any]]:
             "held_out_mm": _mm(carried.residuals[second, j]),
             "own_mm": _mm(halves[1].residuals[second, j]),
         }
+        if "twist_axis_off_limb_deg" in findings:
+            row["twist_axis"] = {
+                "off_limb_deg": findings["twist_axis_off_limb_deg"],
+                "range_deg": findings["ranges_deg"][0],
+                "halves_deg": findings["halves_disagreement_deg"][0],
+                "said_deg": findings["axes_uncertainty_deg"][0],
+                "phases_s": findings["twist_phases_s"],
+            }
         row["enough"] = all(_enough(half, joint.name) for half in halves)
         if first.axes_source == last.axes_source == "movement":
             # a second axis that one half added to a hinge, distal, is no axis of the movement
             count = min(first.n_axes, last.n_axes)
             a, b = np.asarray(first.axes)[-count:], np.asarray(last.axes)[-count:]
-            order = matched(b, a) if len(a) == 2 else list(range(len(a)))
+            order = matched(b[-2:], a[-2:]) if len(a) > 1 else [0]
+            if len(a) == 3:  # the first is what the limb turns about
+                order = [0, 1 + order[0], 1 + order[1]]
             row["halves_deg"] = line_angles(a, b[order]).tolist()
         rows.append(row)
     return rows
@@ -55,7 +65,8 @@ def half_rows(motion: Motion, whole: Parameters) -> list[dict[str, Any]]:
 def _enough(half: Parameters, joint: str) -> bool:
     """Return whether a half moves far enough about each of its axes to speak against the whole."""
     findings: Any = half.history[-1].findings["joints"]
-    return bool(min(findings[joint].get("ranges_deg") or [0.0]) >= KEEP.axes.smallest_range)
+    told = [r for r in findings[joint].get("ranges_deg", ()) if r is not None]
+    return bool(min(told, default=0.0) >= KEEP.axes.smallest_range)
 
 
 def _mm(residuals: np.ndarray) -> float | None:

@@ -31,6 +31,7 @@ JOINTS = {"trunk": "lumbar"} | {
 """What a trial is called after → the joint it moves."""
 WIDE, HIGH = 900, 220
 MARGIN = 44
+SWINGS = 2  # axes that move the limb, the last of its axes
 COLOURS = ("#e8590c", "#1098ad", "#868e96")
 """Of movements about axis 1, axis 2, and neither."""
 
@@ -72,7 +73,7 @@ def look_at(name: str, joint: str, path: str) -> Trial:
     )
     axes = solution.skeleton.joint(joint).axes
     assert axes is not None
-    return Trial(name, joint, solution, view, phase_labels(view.samples, axes))
+    return Trial(name, joint, solution, view, phase_labels(view.samples, axes[-SWINGS:]))
 
 
 def row(trial: Trial) -> dict[str, Any]:
@@ -86,7 +87,7 @@ def row(trial: Trial) -> dict[str, Any]:
         "threshold_deg_s": float(np.rad2deg(movement.threshold)),
         "valley": movement.valley,
         "movements": len(phases),
-        "about": [int((trial.labels == k).sum()) for k in range(joint.n_axes)],
+        "about": [int((trial.labels == k).sum()) for k in range(min(SWINGS, joint.n_axes))],
         "moving_s": float(sum(end - start for start, end in phases)),
         "axes_from": str(joint.axes_source),
     }
@@ -164,8 +165,8 @@ in none, but for the first second of *rhip*, where a fidget of 33 deg/s is taken
   slow, its peaks at 30 deg/s rise little above the threshold, and it falls into pieces that miss
   their slowest moments. The last burst of *rankle* is the foot being put down.
 - *trunk*: five movements with the rests between them. From 62 s on the trunk turns about its own
-  length, ±50° of twist in the report: its direction hardly moves then, 1 to 12 deg/s, and direction
-  is all that the filter looks at, as in the paper.
+  length, ±50° in the report: its direction hardly moves then, 1 to 12 deg/s, and direction is all
+  that the filter looks at, as in the paper. The speed of the whole orientation tells a third axis.
 """
 
 
@@ -182,7 +183,7 @@ def page(rows: list[dict[str, Any]]) -> str:
         lines.append(
             f"| [{r['trial']}](../images/segments/{r['trial']}.svg) | {r['joint']} | "
             f"{r['seconds']:.0f} | {limit} | {r['movements']} | "
-            f"{', '.join(str(n) for n in r['about'])} | {r['moving_s']:.0f} | {r['axes_from']} |"
+            f"{', '.join(map(str, r['about']))} | {r['moving_s']:.0f} | {r['axes_from']} |"
         )
     return _INTRODUCTION + "\n".join(lines) + "\n" + SEEN
 

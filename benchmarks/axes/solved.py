@@ -1,6 +1,6 @@
 """Sections 5 and 6 need solved recordings: synthetic ones and every usable real one."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +45,20 @@ def run_real(name: str, path: str) -> dict[str, Any]:
         }
     except KinesphereError as error:
         return {"name": name, "failure": str(error).partition(" (")[0].partition(";")[0]}
+
+
+def summary(real: Sequence[dict[str, Any]], made: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Return what sections 5, 6 and 8 show, by recording."""
+    usable = [r for r in real if "failure" not in r]
+    paper: dict[str, list[Any]] = {}
+    for result in (*made, *usable):
+        paper.setdefault(result["name"], []).extend(result["paper"])
+    return {
+        "paper": paper,
+        "halves": {r["name"]: r["halves"] for r in usable},
+        "vendor": {r["name"]: r["vendor"] for r in usable},
+        "skipped": {r["name"]: r["failure"] for r in real if "failure" in r},
+    }
 
 
 def _model(path: Path, recording: Recording) -> TopologicalModel | None:

@@ -17,6 +17,10 @@ class UnwritableFile(KinesphereError):
     """A place cannot be written to, or holds what must not be replaced."""
 
 
+class MissingExtra(KinesphereError):
+    """A package that only some commands need is not installed."""
+
+
 class BadRecording(KinesphereError):
     """A recording cannot be used as asked: no frames, no rate, labels that clash."""
 
@@ -27,6 +31,14 @@ class BadModel(KinesphereError):
 
 class BadSetting(KinesphereError):
     """A setting has no such name, no such value, or lies outside its range."""
+
+
+class BadCamera(KinesphereError):
+    """A camera's calibration contradicts itself, or does not fit its images."""
+
+
+class BadScene(KinesphereError):
+    """A scene cannot be tracked as it is: images, calibration or times do not fit together."""
 
 
 class DegenerateMotion(KinesphereError):

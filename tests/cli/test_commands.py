@@ -17,7 +17,19 @@ from kinesphere.io import read, write, write_model
 from kinesphere.labelling import built_in_model
 from kinesphere.pipeline import Settings, settings_fields, stage_settings
 
-COMMANDS = ("demo", "info", "label", "solve", "edit", "compare", "convert", "model", "settings")
+COMMANDS = (
+    "demo",
+    "info",
+    "label",
+    "solve",
+    "track",
+    "view",
+    "edit",
+    "compare",
+    "convert",
+    "model",
+    "settings",
+)
 
 
 def ok(called):
@@ -40,7 +52,7 @@ def test_help_lists_what_there_is(call):
     for command in COMMANDS:
         assert command in shown.output
     listed = [line.split()[1] for line in shown.output.splitlines() if line.startswith("│ ")]
-    assert not {"track", "view", "live", "batch"} & {*listed}
+    assert not {"live", "batch"} & {*listed}
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -210,10 +222,13 @@ def test_solve_in_words_and_again_with_reused_axes(solved, call, trc, tmp_path):
     folder, _ = solved
     again = tmp_path / "again"
     out = ok(call("solve", trc, "-o", again, "--calibration-from", folder, "--model", "cmu41"))
-    for words in ("labelling", "41 of 41 labels", "of the other recording", "left knee", "Report:"):
+    for words in ("labelling", "41 of 41 labels", "of another recording", "left knee", "Report:"):
         assert words in out
     assert (again / "report.html").is_file()
     before, after = read(folder).skeleton, read(again).skeleton
+    twice = ["--calibration-from", folder, "--calibration-from", again]
+    out = ok(call("solve", trc, "-o", tmp_path / "third", *twice, "--model", "cmu41"))
+    assert "axes known best by recording 1: " in out
     for a, b in zip(before.joints, after.joints, strict=True):
         assert_array_equal(a.axes, b.axes)
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 import kinesphere as ks
 from kinesphere.data import Solution
-from kinesphere.io import read, write, write_bvh
+from kinesphere.io import read, read_rig, write, write_bvh
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +169,7 @@ def test_onto_the_gltf_of_a_solved_folder(call, solved, tmp_path):
     assert "part" in call("info", out).out
     as_bvh = call("retarget", solved, "--onto", rig, "-o", tmp_path / "out.bvh")
     assert as_bvh.code == 0, as_bvh.err
-    names = read(rig).limb_names
+    names = read_rig(rig).limb_names
     assert set(read(tmp_path / "out.bvh").skeleton.limb_names) == set(names)
 
 

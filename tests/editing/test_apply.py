@@ -8,10 +8,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from kinesphere.data import motion_from_parameters
 from kinesphere.data.edits import Edit
-from kinesphere.editing import apply_edits
+from kinesphere.editing import apply_edits, edit_parameters, find_moves, moved_poses
 from kinesphere.editing.weights import edit_weights
 from kinesphere.errors import BadSetting
-from kinesphere.geometry.rotations import rotation_angle
+from kinesphere.geometry.rotations import rotation_about, rotation_angle
 from kinesphere.parameterization import parameterize
 from kinesphere.pipeline import solve
 from kinesphere.synthetic import make_performance
@@ -138,3 +138,45 @@ def test_a_blend_begins_and_ends_without_a_jerk():
     speed = np.diff(weights) * 1000
     assert np.abs(np.diff(speed)).max() * 1000 < 6.0  # 1/s²; a straight ramp would jump by 1000
     assert (speed[:2000] >= 0).all()
+
+
+def test_the_root_turns_in_its_place_and_takes_everything_along(solution):
+    turned = apply_edits(solution, [edit("root", 2, add_deg=40.0, frames=(50, 90))])
+    before, after = solution.motion, turned.motion
+    inside = np.arange(49, 90)
+    assert_allclose(after.origins[inside, 0], before.origins[inside, 0], atol=EXACT)
+    own = np.swapaxes(before.rotations[inside, 0], -1, -2) @ after.rotations[inside, 0]
+    assert_allclose(own, np.broadcast_to(rotation_about(np.eye(3)[1], np.deg2rad(40.0)), own.shape),
+                    atol=EXACT)  # fmt: skip
+    assert_allclose(after.relative_rotations(), before.relative_rotations(), atol=EXACT)
+    assert_array_equal(turned.parameters.angles, solution.parameters.angles)
+    outside = np.delete(np.arange(before.n_frames), inside)
+    assert_array_equal(after.rotations[outside], before.rotations[outside])
+
+
+def test_the_root_is_shifted_in_the_world(solution):
+    told = [edit("root", "z", add_m=0.5), edit("root", "y", add_m=-0.1)]
+    shifted = apply_edits(solution, told)
+    by = np.array([0.0, -0.1, 0.5])
+    assert_allclose(shifted.motion.origins, solution.motion.origins + by, atol=EXACT)
+    assert_allclose(shifted.motion.rotations, solution.motion.rotations, atol=EXACT)
+    worn = [i for i, label in enumerate(solution.recording.labels)
+            if any(label in limb.markers for limb in solution.skeleton.limbs)]  # fmt: skip
+    assert_allclose(
+        shifted.recording.markers[:, worn], solution.recording.markers[:, worn] + by, atol=EXACT
+    )
+    assert shifted.history[-1].findings["frames"] == {"root": 2 * solution.motion.n_frames}
+
+
+def test_moves_of_some_frames_are_those_of_all(solution):
+    edits = [edit(add_deg=30.0, frames=(100, 200), blend_s=0.5), edit("root", 1, add_deg=5.0)]
+    edited, _ = edit_parameters(solution.parameters, edits)
+    whole = find_moves(solution.parameters, edited)
+    frames = np.array([3, 99, 150, 205])
+    some = find_moves(solution.parameters, edited, frames)
+    assert_array_equal(some.turns, whole.turns[frames])
+    assert_array_equal(some.shifts, whole.shifts[frames])
+    for part, all_ in zip(
+        moved_poses(solution.motion, some, frames), moved_poses(solution.motion, whole), strict=True
+    ):
+        assert_array_equal(part, all_[frames])

@@ -20,7 +20,8 @@ from kinesphere.editing import SurfaceSettings, attach_surface, skin
 from kinesphere.editing.mesh.girths import fit_girths
 from kinesphere.editing.mesh.merging import on_limbs_of
 from kinesphere.editing.mesh.proportions import begins_of, fit_limbs
-from kinesphere.editing.mesh.standing import ups_while_standing
+from kinesphere.editing.mesh.standing import ankle_heights, ups_while_standing
+from kinesphere.editing.mesh.untangle import softened
 from kinesphere.errors import BadSetting, BadSurface
 from kinesphere.synthetic import make_performance
 
@@ -139,7 +140,9 @@ def test_a_surface_fits_one_skeleton_only(motion):
     other = renamed(motion, ["trunk", *(f"limb_{i}" for i in range(1, len(surface.limbs)))])
     with pytest.raises(BadSurface, match="attach it first"):
         skin(surface, other)
-    with pytest.raises(BadSetting, match="blend is 'cubic'; known are linear, dual-quaternion"):
+    with pytest.raises(
+        BadSetting, match="blend is 'cubic'; known are linear, dual-quaternion, twist-joints"
+    ):
         skin(surface, motion, blend="cubic")
 
 
@@ -176,6 +179,56 @@ def test_feet_stand_level(motion, rng):
     assert_allclose(lean @ ups[limb], [0, 1, 0], atol=1e-9)
 
 
+def standing(motion, rng, ankle):
+    """Return forty frames of standing with the left ankle so high above y = 0, m."""
+    n = 40
+    rotations = np.tile(np.eye(3), (n, len(motion.skeleton.limbs), 1, 1))
+    limb = motion.skeleton.limb_names.index("left_foot")
+    origins = np.tile(default_origins(motion.skeleton), (n, 1, 1))
+    at = default_origins(motion.skeleton)[limb] + pivots(motion.skeleton)[limb]
+    origins[..., 1] += ankle - at[1]
+    origins += rng.normal(scale=1e-5, size=(n, 1, 3))
+    return posed(motion, rotations, origins)
+
+
+@pytest.mark.parametrize("ankle", [0.065, 0.085])
+def test_soles_stand_on_the_floor(motion, rng, ankle):
+    still = standing(motion, rng, ankle)
+    limb = motion.skeleton.limb_names.index("left_foot")
+    assert ankle_heights(still)[limb] == pytest.approx(ankle, abs=1e-4)
+    surface = attach_surface(still)
+    foot = surface.weights[:, limb] > 0.9
+    sole = skin(surface, still, np.array([20]))[0, foot, 1].min()
+    assert abs(sole) < 6e-3  # weights are softened on the way into the default position
+
+
+def test_a_floor_elsewhere_moves_no_foot(motion, rng):
+    assert np.isnan(ankle_heights(standing(motion, rng, 0.4))).all()
+    assert np.isnan(ankle_heights(standing(motion, rng, -0.1))).all()
+
+
+def test_the_measured_shape_is_not_asked_of_a_given_body(motion):
+    """A body without shapes is as large as the skeleton before its limbs are fitted."""
+    small = replace(bundled_body(), shapes=())
+    small = replace(
+        small,
+        vertices=small.vertices / 4,
+        joint_centres=small.joint_centres / 4,
+        ends=small.ends / 4,
+    )
+    surface = attach_surface(motion, small)
+    tall = np.ptp(attach_surface(motion).vertices[:, 1])
+    assert np.ptp(surface.vertices[:, 1]) == pytest.approx(tall, rel=0.05)
+    thickness = np.array(list(surface.history[-1].findings["thickness"].values()))
+    assert (thickness > 0.65).all()
+    assert (thickness < 1.5).all()
+
+
+def test_twist_joints_are_a_blend(motion):
+    surface, still = attach_surface(motion), in_default_position(motion)
+    assert_allclose(skin(surface, still, blend="twist-joints")[0], surface.vertices)
+
+
 def test_gaps_are_bridged_by_what_carries_the_limb(motion):
     rotations, origins, flags = (
         np.array(a) for a in (motion.rotations, motion.origins, motion.flags)
@@ -199,3 +252,12 @@ def test_thickness_may_be_left_to_the_size(motion):
     scales = np.array(list(plain.history[-1].findings["thickness"].values()))
     limb = plain.limbs.index("left_shank")
     assert scales[limb, 0] == scales[limb, 2]
+
+
+def test_implicit_softening_is_the_limit_of_rounds():
+    body = bundled_body()
+    explicit = softened(body.weights, body.faces, 256)
+    implicit = softened(body.weights, body.faces, 257)
+    changed = np.abs(explicit - body.weights).mean()
+    assert np.abs(explicit - implicit).mean() < 0.12 * changed
+    assert_allclose(implicit.sum(axis=1), 1)

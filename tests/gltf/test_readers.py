@@ -38,7 +38,7 @@ def agrees(page, motion, surface, markers, frames):
     """Compare joints, skinned vertices and markers in three.js with ours."""
     names = list(motion.skeleton.limb_names)
     vertices = np.arange(0, surface.n_vertices, 97)
-    ours = skin(surface, motion, frames=np.asarray(frames), blend="linear")[:, vertices]
+    ours = skin(surface, motion, frames=np.asarray(frames), blend="twist-joints")[:, vertices]
     joints = [joint.centre_in_child for joint in motion.skeleton.joints]
     labels = list(markers.labels)
     for k, frame in enumerate(frames):

@@ -34,6 +34,12 @@ def test_edits_come_back(tmp_path):
 
 
 def test_any_name_survives(tmp_path):
+    edits = (
+        Edit(joint="root", axis="y", add_m=0.125, frames=(1, 2)),
+        Edit(joint="root", axis=3, add_deg=-12.5),
+    )
+    write_edits(edits, tmp_path / "root.toml")
+    assert read_edits(tmp_path / "root.toml") == edits
     edits = (Edit(joint='a "quoted"\\ näme\n', axis=2, add_deg=1e-7, seconds=(0.0, 0.1)),)
     write_edits(edits, tmp_path / "edits.toml")
     assert read_edits(tmp_path / "edits.toml") == edits
@@ -54,6 +60,11 @@ def test_any_name_survives(tmp_path):
         ('[[edit]]\njoint = "neck"\naxis = 1\nadd_deg = 1\nframes = [9, 3]', "first, last"),
         ('[[edit]]\njoint = "neck"\naxis = 1\nadd_deg = 1\nangle = 3', "no key this place knows"),
         ('[[edit]]\njoint = "neck"\naxis = 1\nadd_deg = 1\nblend_s = -1', "blend_s"),
+        ('[[edit]]\njoint = "neck"\naxis = "x"\nadd_m = 1.0', "for the root; joints turn"),
+        ('[[edit]]\njoint = "root"\naxis = "x"\nadd_deg = 1', "along x needs add_m"),
+        ('[[edit]]\njoint = "root"\naxis = 2\nadd_m = 1', "add_m needs axis"),
+        ('[[edit]]\njoint = "root"\naxis = 2\nset_deg = 1', "the root turns about axis"),
+        ('[[edit]]\njoint = "root"\naxis = "twist"\nadd_deg = 1', "the root turns about axis"),
     ],
 )
 def test_what_means_nothing_is_refused_with_its_place(tmp_path, text, says):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from kinesphere.data import default_origins, motion_from_parameters, pivots
+from kinesphere.data import TwistJoints, default_origins, motion_from_parameters, pivots
 from kinesphere.editing import attach_surface
 from kinesphere.errors import BadSurface
 from kinesphere.io.gltf import write_gltf
@@ -52,9 +52,11 @@ def test_the_rest_pose_stands_and_looks_along_z(motion, tmp_path):
     ground = surface.vertices[:, 1].min() + nodes["trunk"]["translation"][1]
     assert_allclose(ground, pivots(motion.skeleton)[0][1], atol=FLOAT32)
     joints = tree["skins"][0]["joints"]
-    assert [tree["nodes"][j]["name"] for j in joints] == list(surface.limbs)
+    names = [tree["nodes"][j]["name"] for j in joints]
+    assert names == [*surface.limbs, *TwistJoints(surface).names]
     back = accessor(tree, binary, tree["skins"][0]["inverseBindMatrices"]).reshape(-1, 4, 4)
     places = default_origins(motion.skeleton) + pivots(motion.skeleton)
+    places = np.vstack([places, places[TwistJoints(surface).limbs]])
     assert_allclose(back[:, 3, :3], -places, atol=FLOAT32)
 
 
@@ -95,6 +97,24 @@ def test_joints_that_hold_are_not_moved(motion, tmp_path):
     paths = [c["target"]["path"] for c in tree["animations"][0]["channels"]]
     assert paths.count("rotation") == len(motion.skeleton.limbs)
     assert paths.count("translation") == 1
+
+
+def test_nodes_that_spread_twist_hang_from_their_limbs(motion, tmp_path):
+    surface = attach_surface(motion)
+    write_gltf(motion, tmp_path / "a.glb", surface)
+    tree, binary = parts(tmp_path / "a.glb")
+    nodes = tree["nodes"]
+    parents = {c: node["name"] for node in nodes for c in node.get("children", [])}
+    extra = [i for i, node in enumerate(nodes) if "_twist_" in node["name"]]
+    assert len(extra) == 4 * 6  # upper arms, forearms, thighs
+    assert {parents[i] for i in extra} == {nodes[i]["name"].partition("_twist")[0] for i in extra}
+    moved = {c["target"]["node"]: c["target"]["path"] for c in tree["animations"][0]["channels"]}
+    assert {moved[i] for i in extra} == {"rotation"}
+    primitive = tree["meshes"][0]["primitives"][0]["attributes"]
+    shares = accessor(tree, binary, primitive["WEIGHTS_0"])
+    assert_allclose(shares.sum(axis=1), 1, atol=FLOAT32)
+    carried = accessor(tree, binary, primitive["JOINTS_0"])[shares > 0.5]
+    assert np.isin(extra, carried).any()
 
 
 def test_a_surface_of_others_is_refused(motion, tmp_path):

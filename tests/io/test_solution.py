@@ -346,3 +346,18 @@ def test_nothing_is_ever_unpickled(folder):
     np.savez(path, **arrays)
     with pytest.raises(UnreadableFile, match="allow_pickle"):
         read_solution(folder)
+
+
+def test_how_long_it_took_is_told_by_the_summary_alone(solution, folder, tmp_path):
+    slower = replace(solution, seconds={"read": 7.5})
+    write_solution(slower, tmp_path / "slower")
+    arrays = (tmp_path / "slower" / "solution.npz").read_bytes()
+    assert arrays == (folder / "solution.npz").read_bytes()
+    assert read_solution(tmp_path / "slower").seconds == {"read": 7.5}
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"seconds": 3}', '{"seconds": {"read": "x"}}'])
+def test_times_that_nobody_can_read_are_none(solution, tmp_path, text):
+    write_solution(solution, tmp_path / "folder")
+    (tmp_path / "folder" / "summary.json").write_text(text, encoding="utf-8")
+    assert read_solution(tmp_path / "folder").seconds == {}

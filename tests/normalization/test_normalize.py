@@ -13,6 +13,10 @@ from kinesphere.data import PoseFlag, Skeleton
 from kinesphere.errors import AmbiguousFacing, BadSetting, DegenerateMotion
 from kinesphere.geometry.rotations import rotation_angle
 from kinesphere.normalization import NormalizationSettings, normalize
+from kinesphere.normalization.averaging import robust_mean_rotations
+from kinesphere.normalization.default_frames import find_default_frames
+from kinesphere.normalization.proposal import propose_bodies
+from kinesphere.normalization.samples import take_samples
 
 EXACT = 1e-9  # rad and m; rounding alone leaves about 1e-14
 LOOSE = np.deg2rad(0.5)  # where arms that hang unevenly tilt the plane through the joints
@@ -431,6 +435,50 @@ def test_a_walker_is_averaged_over_strides(tools, rng):
     single = normalize(it.motion, NormalizationSettings(frames="single"))
     assert apart(many.rotations[:, 0], it.truth[:, 0]) < np.deg2rad(2.5)
     assert apart(single.rotations[:, 0], it.truth[:, 0]) > np.deg2rad(5)
+
+
+def test_of_strides_the_frames_serve_in_which_shoulders_and_pelvis_face_alike(
+    tools, rng, monkeypatch
+):
+    time = np.arange(300) / 50.0
+    bends = {"trunk": np.outer(np.deg2rad(12) * np.sin(2 * np.pi * time), [0, 1.0, 0])}
+    it = tools.make_doll(rng, n_frames=300, bends=bends, walk=np.outer(1.3 * time, [1.0, 0, 0]))
+    half = normalize(it.motion)
+    monkeypatch.setattr("kinesphere.normalization.default_frames._ALIKE", 1.0)
+    whole = normalize(it.motion)
+    found, before = step_of(half).findings, step_of(whole).findings
+    # of a sine the rms is 0.71, that of the half nearest to its middle 0.40
+    assert found["spread_rms_deg"] < 0.7 * before["spread_rms_deg"]
+    assert set(found["frames_averaged"]) < set(before["frames_averaged"])
+    assert found["n_frames_averaged"] == pytest.approx(before["n_frames_averaged"] / 2, abs=4)
+    for motion in (half, whole):
+        assert apart(motion.rotations[:, 0], it.truth[:, 0]) < np.deg2rad(1.0)
+
+
+def test_of_a_few_frames_on_the_move_all_serve(tools, rng):
+    time = np.arange(40) / 50.0
+    bends = {"trunk": np.outer(np.deg2rad(12) * np.sin(2 * np.pi * time), [0, 1.0, 0])}
+    it = tools.make_doll(rng, n_frames=40, bends=bends, walk=np.outer(1.3 * time, [1.0, 0, 0]))
+    chosen = NormalizationSettings()
+    samples = take_samples(it.motion, chosen.sampling, chosen.speed_window)
+    proposal = propose_bodies(samples, chosen, None)
+    found = find_default_frames(samples, proposal, chosen)
+    assert 4 < found.chosen.sum() < 10
+    assert found.chosen.all()
+
+
+def test_the_body_is_the_mean_of_the_frames_that_serve(tools, rng):
+    time = np.arange(300) / 50.0
+    course = np.sin(2 * np.pi * time) + 0.6 * np.cos(4 * np.pi * time)  # longer at one side
+    bends = {"trunk": np.outer(np.deg2rad(10) * course, [0, 1.0, 0])}
+    it = tools.make_doll(rng, n_frames=300, bends=bends, walk=np.outer(1.3 * time, [1.0, 0, 0]))
+    chosen = NormalizationSettings()
+    samples = take_samples(it.motion, chosen.sampling, chosen.speed_window)
+    proposal = propose_bodies(samples, chosen, None)
+    found = find_default_frames(samples, proposal, chosen)
+    bodies = proposal.root_from_body[found.chosen]
+    assert_allclose(found.root_from_body, robust_mean_rotations(bodies[:, None])[0], atol=1e-9)
+    assert_allclose(found.spread, rotation_angle(found.root_from_body.T @ bodies), atol=1e-9)
 
 
 def test_shoulders_that_turn_in_the_stance_are_flagged(tools, rng):

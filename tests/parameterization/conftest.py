@@ -119,3 +119,9 @@ def calibrate(
 def calibration():
     """Return the generator of a calibration with known truth."""
     return calibrate
+
+
+@pytest.fixture
+def skin():
+    """Return the generator of correlated noise."""
+    return wander

@@ -188,3 +188,13 @@ def test_windows_keep_the_order_and_let_a_cell_return():
     points = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
     chosen = np.rad2deg(np.arctan2(*windowed(points, np.deg2rad(4.9)).T[[1, 0]]))
     assert_allclose(chosen, [0, 5, 10, 15, 20, 25, 30, 25, 20, 15, 10, 5, 0], atol=0.6)
+
+
+def test_two_frames_of_a_circle_tell_no_axis(rng, calibration):
+    """Any line across them is as good, and rounding would choose: axes would flip with 1e-15."""
+    samples = calibration(rng).view().samples
+    brief = tuple((a + 5, a + 7) for a, _ in samples.phases)
+    settings = AxesSettings(method="small-circle")
+    assert len(find_axes(samples.with_phases(brief), 2, settings)) == 0
+    mixed = samples.with_phases((*samples.phases, *brief))
+    assert_allclose(find_axes(mixed, 2, settings), find_axes(samples, 2, settings), atol=1e-12)

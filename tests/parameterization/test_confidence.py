@@ -5,7 +5,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from kinesphere.parameterization.axes import find_axes
-from kinesphere.parameterization.confidence import contradiction, early_share
+from kinesphere.parameterization.confidence import (
+    assess_axes,
+    contradiction,
+    early_share,
+)
 from kinesphere.parameterization.settings import AxesSettings
 
 
@@ -66,3 +70,23 @@ def test_the_early_share_counts_frames(rng, calibration, cut):
     labels = np.array([0, 1, 1])
     expected = {0: [0, 0], 55: [1, 0.1], 10_000: [1, 1]}[cut]
     assert_allclose(early_share(samples, labels, 2, cut), expected)
+
+
+def test_halves_that_contradict_each_other_enough_end_the_comparing(rng, calibration):
+    samples, _ = alternating(rng, calibration)
+    axes = search(samples)[1]
+    seen = []
+
+    def find(half):
+        seen.append(half.phases)
+        return np.roll(axes, len(seen), axis=1)  # something else every time
+
+    whole = assess_axes(samples, axes, find)
+    asked, most = len(seen), whole.halves.max()
+    assert asked > 2
+    seen.clear()
+    assert assess_axes(samples, axes, find, np.deg2rad(20.0)).halves.max() > np.deg2rad(20.0)
+    assert len(seen) == 2
+    seen.clear()
+    assert assess_axes(samples, axes, find, 2.0).halves.max() == most
+    assert len(seen) == asked

@@ -56,3 +56,31 @@ def test_skin_makes_short_movements_less_certain(rng):
     assert quality is not None
     assert short is not None
     assert 2.5 * quality.uncertainty < short.uncertainty
+
+
+def test_movements_done_twice_go_before_one_done_once():
+    """About each axis one pure stroke and one with a wobble, and one that is about neither."""
+    strokes = [(40, 0, 0), (40, 10, 0), (0, 40, 0), (10, 40, 0), (30, 30, 1)]
+    course = np.sin(np.linspace(0, 2 * np.pi, 100))
+    out_of_step = np.sin(np.linspace(0, 4 * np.pi, 100))
+    vectors = np.zeros((len(strokes) * 200, 3))
+    for i, (first, second, free) in enumerate(strokes):
+        during = slice(200 * i + 50, 200 * i + 150)
+        main = first >= second
+        vectors[during, 2] = np.deg2rad(first) * (course if main else out_of_step)
+        vectors[during, 0] = np.deg2rad(second) * (out_of_step if main or free else course)
+    everywhere = np.ones(len(vectors), dtype=bool)
+    settings = ParameterizationSettings()
+    view = view_joint(
+        "joint_01",
+        Rotation.from_rotvec(vectors).as_matrix(),
+        LIMB,
+        everywhere,
+        RATE,
+        everywhere,
+        settings,
+        False,
+    )
+    assert len(view.samples.phases) == 5
+    quality = movement_axes(view, 2, settings).quality
+    assert sorted(np.bincount(quality.labels)) == [2, 2]

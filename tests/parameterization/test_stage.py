@@ -11,6 +11,7 @@ from kinesphere.data import JointFlag, Motion, PoseFlag, Skeleton, motion_from_p
 from kinesphere.errors import BadSetting
 from kinesphere.geometry.rotations import rotation_about
 from kinesphere.parameterization import (
+    AngleSettings,
     AxesSettings,
     FilterSettings,
     ParameterizationSettings,
@@ -244,6 +245,23 @@ def test_the_papers_own_way_by_name(performance):
     assert np.isfinite(solved.twists).all()
     steps = np.rad2deg(solved.twists) / 5
     assert_allclose(steps, np.round(steps), atol=1e-9)
+
+
+def test_angles_run_on_where_that_is_asked_for(performance):
+    motion = only(performance.motion, ["trunk", "left_thigh"])
+    turns = rotation_about(np.array([0.0, 0.0, 1.0]), np.linspace(0, 9 * np.pi, motion.n_frames))
+    rotations = motion.rotations.copy()
+    rotations[:, 1] = rotations[:, 0] @ turns
+    motion = replace(motion, rotations=rotations)
+    jumps, runs = (
+        parameterize(motion, ParameterizationSettings(angles=chosen))
+        for chosen in (AngleSettings(), AngleSettings(unwrap=True))
+    )
+    assert np.abs(jumps.angles[:, 0, :2]).max() <= np.pi
+    ways = np.abs(np.ptp(runs.angles[:, 0, :2], axis=0))
+    assert ways.max() == pytest.approx(9 * np.pi, abs=0.5)
+    first, second = motion_from_parameters(jumps), motion_from_parameters(runs)
+    assert_allclose(first.rotations, second.rotations, atol=1e-9)
 
 
 def test_counts_are_followed(performance):

@@ -191,6 +191,46 @@ class TestAgainstTheFile:
         assert step(world).warnings[0].endswith("with a steady floor: up is +y")
 
 
+class TestWithoutAField:
+    """Nothing but the body says which way is up: who does nothing but lie looks as if standing."""
+
+    def test_who_stands_on_the_files_floor_is_not_doubted(self, statue):
+        assert step(orient(statue)).warnings == ()
+
+    def test_who_walks_above_any_floor_is_not_doubted(self, walker):
+        assert step(orient(replace(walker, markers=walker.markers + 3 * UP))).warnings == ()
+
+    def test_who_lies_is_doubted(self, statue):
+        (warning,) = step(orient(lying(statue))).warnings
+        assert "names no up axis and no floor shows it: up is +x" in warning
+        assert "orientation.up" in warning
+
+    def test_who_stands_on_the_head_is_doubted(self, statue, rng):
+        markers = statue.markers * [1, -1, -1]
+        markers -= np.nanmin(markers, axis=(0, 1)) * UP
+        (warning,) = step(orient(replace(statue, markers=markers))).warnings
+        assert "up is -y because the head is there from the feet" in warning
+        swaying = markers + 0.05 * rng.normal(size=markers.shape) * markers[..., 1:2]
+        (warning,) = step(orient(replace(statue, markers=swaying))).warnings
+        assert "up is -y" in warning
+
+    def test_who_walks_on_the_hands_is_doubted(self, walker):
+        """Along the floor everything moves more than the feet in the air do."""
+        markers = walker.markers * [1, -1, -1] + 1.7 * UP
+        feet = markers[..., 1] > 1.2
+        markers[..., 1] += np.linspace(0, 0.1, len(markers))[:, None] * feet
+        (warning,) = step(orient(replace(walker, markers=markers))).warnings
+        assert "up is -y" in warning
+
+    def test_who_stands_still_above_any_floor_is_doubted(self, statue):
+        (warning,) = step(orient(replace(statue, markers=statue.markers + UP))).warnings
+        assert "up is +y" in warning
+
+    def test_the_user_settles_it(self, statue):
+        world = orient(lying(statue), settings=OrientationSettings(up="+y"))
+        assert step(world).findings["up"] == "+y"
+
+
 class TestTheUser:
     """What the user says wins."""
 

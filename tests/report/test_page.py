@@ -15,12 +15,12 @@ from scipy.spatial.transform import Rotation
 from kinesphere.data import Step
 from kinesphere.data.isb import isb_angles
 from kinesphere.report import report_html
+from kinesphere.report.moments import runs
 from kinesphere.report.packing import unpack
 from kinesphere.report.scene import (
     MAX_FRAMES,
     SCREEN_RATE,
     frame_stride,
-    runs,
     scene_from_solution,
 )
 
@@ -188,8 +188,8 @@ def test_left_stands_beside_right(html):
 
 
 def test_warnings_are_said_once(html):
-    warnings = html.split('<section class="warnings"')[1].split("</section>")[0]
-    assert warnings.count("a warning twice") == 1
+    warnings = html.split('<details class="warnings"')[1].split("</details>")[0]
+    assert warnings.split("<ul>")[1].count("a warning twice") == 1
     assert "2 things to know" in warnings
 
 

@@ -7,12 +7,13 @@ from scipy.spatial.transform import Rotation
 from kinesphere.data import JointModel
 from kinesphere.errors import BadSetting
 from kinesphere.geometry.centres import CentreFit
+from kinesphere.geometry.range_of_motion import range_of_motion
 from kinesphere.skeleton import SkeletonSettings
 from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.body import measure_shape
 from kinesphere.skeleton.chain import MeasuredJoint, joint_noise
 from kinesphere.skeleton.poses import borrowing
-from kinesphere.skeleton.report import range_of_motion, verdict_on
+from kinesphere.skeleton.report import verdict_on
 from kinesphere.skeleton.sampling import spread_frames
 
 MARKERS = 4

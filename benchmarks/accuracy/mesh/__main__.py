@@ -12,7 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.accuracy.mesh.measures import distances, naive_blend, twisted_forearm
+from benchmarks.accuracy.mesh.brought import brought_bodies
+from benchmarks.accuracy.mesh.measures import (
+    TWIST_JOINTS,
+    distances,
+    naive_blend,
+    twisted_forearm,
+)
 from benchmarks.accuracy.mesh.page import page
 from kinesphere import __version__, bundled_body, read, skin, solve
 from kinesphere.data import Motion, Solution, motion_from_parameters
@@ -47,6 +53,7 @@ def main() -> int:
             for name, solution in (solutions | _others(folder)).items()
         },
         "twist": [_twist(solutions, degrees) for degrees in (45, 90, 135)],
+        "brought": brought_bodies(folder, solutions["06_01"].motion),
         "markers": {name: _markers(solution) for name, solution in solutions.items()},
         "skinning": _skinning(solutions["02_05"]),
         "glb": _glb(),
@@ -77,7 +84,7 @@ def _inverted(motion: Motion) -> dict[str, int]:
 def _twist(solutions: dict[str, Solution], degrees: float) -> dict[str, Any]:
     """Take the worst of all recordings and both sides."""
     row: dict[str, Any] = {"degrees": degrees}
-    for blend in ("linear", "dual-quaternion"):
+    for blend in ("linear", TWIST_JOINTS, "dual-quaternion"):
         kept = [
             twisted_forearm(attach_surface(solution.motion), side, sign * degrees, blend)
             for solution in solutions.values()

@@ -3,12 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array, Surface
+from kinesphere.data import Array, Surface, TwistJoints
 from kinesphere.geometry.rotations import rotation_about
 from kinesphere.geometry.skinning import dual_quaternion_blend, linear_blend
 
 SECTIONS = 40
 BLENDS = {"linear": linear_blend, "dual-quaternion": dual_quaternion_blend}
+TWIST_JOINTS = "twist-joints"
 
 
 def twisted_forearm(surface: Surface, side: str, degrees: float, blend: str) -> tuple[float, float]:
@@ -26,12 +27,18 @@ def twisted_forearm(surface: Surface, side: str, degrees: float, blend: str) -> 
         if f"{side}_{name}" in surface.limbs
     )
     elbow = surface.joint_centres[moved[0]]
-    turn = rotation_about(np.array([0.0, -1.0, 0.0]), np.array(np.radians(degrees)))
+    along = surface.ends[moved[0]] - elbow
+    turn = rotation_about(along / np.linalg.norm(along), np.array(np.radians(degrees)))
     rotations = np.tile(np.eye(3), (1, len(surface.limbs), 1, 1))
     shifts = np.zeros((1, len(surface.limbs), 3))
     rotations[0, moved], shifts[0, moved] = turn, elbow - turn @ elbow
-    shares = surface.weight_limbs, surface.weight_shares
-    twisted = BLENDS[blend](surface.vertices, *shares, rotations, shifts)[0]
+    if blend == TWIST_JOINTS:
+        joints = TwistJoints(surface)
+        twisted = linear_blend(surface.vertices, *joints.weights, *joints.maps(rotations, shifts))
+    else:
+        shares = surface.weight_limbs, surface.weight_shares
+        twisted = BLENDS[blend](surface.vertices, *shares, rotations, shifts)
+    twisted = twisted[0]
     arm = surface.weights[:, [upper, *moved]].sum(axis=1) > 0.5
     faces = surface.faces[arm[surface.faces].all(axis=1)]
     levels = np.linspace(elbow[1], surface.ends[moved[0], 1], SECTIONS)

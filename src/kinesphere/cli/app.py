@@ -14,6 +14,8 @@ from kinesphere.cli.learn import model
 from kinesphere.cli.retarget import retarget
 from kinesphere.cli.settings import settings
 from kinesphere.cli.solve import solve
+from kinesphere.cli.track import track
+from kinesphere.cli.view import view
 
 app = typer.Typer(
     name="kinesphere",
@@ -52,5 +54,7 @@ def kinesphere(
         typer.echo(context.get_help())
 
 
-for command in (demo, info, label, solve, edit, retarget, compare, convert, model, settings):
+for command in (
+    demo, info, label, solve, track, view, edit, retarget, compare, convert, model, settings,
+):  # fmt: skip
     app.command()(command)

@@ -28,6 +28,7 @@ def edit(
     """
     from kinesphere.cli.console import print_json, print_table, print_title, print_warnings, stdout
     from kinesphere.cli.files import REPORT, read_solved, write_solved
+    from kinesphere.data.edits import change_in_words, frames_in_words
     from kinesphere.editing import apply_edits
     from kinesphere.io import check_solution_place, read_edits
 
@@ -46,8 +47,8 @@ def edit(
         (
             one.joint,
             str(one.axis),
-            f"{one.add_deg:+g}°" if one.add_deg is not None else f"to {one.set_deg:g}°",
-            _where(one.frames, one.seconds),
+            change_in_words(one),
+            frames_in_words(one),
             f"{one.blend_s:g} s",
         )
         for one in edits
@@ -57,11 +58,3 @@ def edit(
         print_title(console, "Warnings")
         print_warnings(console, list(step.warnings), frozenset())
     console.print(f"\nReport: {report}", soft_wrap=True)
-
-
-def _where(frames: tuple[int, int] | None, seconds: tuple[float, float] | None) -> str:
-    if frames is not None:
-        return f"frames {frames[0]}–{frames[1]}"
-    if seconds is not None:
-        return f"{seconds[0]:g}–{seconds[1]:g} s"
-    return "all frames"

@@ -11,7 +11,9 @@ from kinesphere.cli.options import BadArgument, JsonOption, SubjectOption
 def info(
     file: Annotated[
         Path,
-        typer.Argument(help="A recording, a motion, a solved folder, or a file of one; a model."),
+        typer.Argument(
+            help="A recording, a motion, a solved folder, or a file of one; a model, a mesh."
+        ),
     ],
     subject: SubjectOption = None,
     as_json: JsonOption = False,
@@ -21,6 +23,7 @@ def info(
     Example: [bold]kinesphere info walk.c3d[/bold]
     """
     from kinesphere.cli.console import print_json
+    from kinesphere.cli.describe_mesh import describe_mesh, show_mesh
     from kinesphere.cli.describe_model import (
         describe_model,
         describe_skeleton,
@@ -35,7 +38,15 @@ def info(
     )
     from kinesphere.cli.describe_recording import describe_recording, show_recording
     from kinesphere.cli.describe_solution import describe_solution, show_solution
-    from kinesphere.data import Motion, Parameters, Recording, Skeleton, Solution, TopologicalModel
+    from kinesphere.data import (
+        Motion,
+        Parameters,
+        Recording,
+        Skeleton,
+        Solution,
+        Surface,
+        TopologicalModel,
+    )
     from kinesphere.io import read
 
     found = read(file)
@@ -47,6 +58,8 @@ def info(
         summary = describe_motion(found)
     elif isinstance(found, TopologicalModel):
         summary = describe_model(found)
+    elif isinstance(found, Surface):
+        summary = describe_mesh(found, file)
     elif isinstance(found, Skeleton | Parameters):
         skeleton = found if isinstance(found, Skeleton) else found.skeleton
         summary = {**describe_skeleton(skeleton), **describe_figure(skeleton)}
@@ -61,6 +74,8 @@ def info(
         show_solution(summary, found)
     elif isinstance(found, Motion):
         show_motion(summary)
+    elif isinstance(found, Surface):
+        show_mesh(summary)
     elif isinstance(found, Skeleton) and not any(joint.n_axes for joint in found.joints):
         show_rig(summary)
     elif summary["kind"] == "skeleton":

@@ -44,11 +44,13 @@ def solve(
         ),
     ] = None,
     calibration_from: Annotated[
-        Path | None,
+        list[Path] | None,
         typer.Option(
             "--calibration-from",
             metavar="DIR",
-            help="Take axes and rest positions from a solved recording of the same person.",
+            help="Take axes and rest positions from a solved recording of the same person. Given "
+            "several times (a functional trial for each joint), every joint takes them from where "
+            "they are known best.",
         ),
     ] = None,
     facing: Annotated[
@@ -71,7 +73,7 @@ def solve(
     [bold]kinesphere solve walk.c3d --calibration-from range -o walk[/bold],
     [bold]kinesphere solve raw.c3d --model none -o raw[/bold]
     """
-    if calibration is not None and calibration_from is not None:
+    if calibration is not None and calibration_from:
         raise BadArgument("--calibration and --calibration-from exclude each other; give one")
     span = calibration_from_text(calibration)
 
@@ -90,7 +92,7 @@ def solve(
             model_from_text(model),
             subject=subject,
             calibration=span,
-            calibration_from=read_solved(calibration_from) if calibration_from else None,
+            calibration_from=[read_solved(folder) for folder in calibration_from or ()],
             facing=facing,  # type: ignore[arg-type]  # normalize names what it knows
             settings=settings,
             progress=progress,

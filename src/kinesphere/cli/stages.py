@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from kinesphere.cli.surface_words import surface_in_words
 from kinesphere.report import finding_in_words, number_in_words
 
 
@@ -66,6 +67,40 @@ def _orientation(found: dict[str, Any], _: dict[str, Any]) -> str:
     return text + ("; mirrored, turned right" if found.get("mirrored") else "")
 
 
+def _scene(found: dict[str, Any], summary: dict[str, Any]) -> str:
+    cameras = found.get("cameras", [])
+    return (
+        f"{len(cameras)} cameras ({', '.join(map(str, cameras[:4]))}"
+        f"{', …' if len(cameras) > 4 else ''}), {summary['n_frames']:,} frames at "
+        f"{summary['rate_hz']:g} Hz; {found.get('unit')}, up was {found.get('up')}"
+    )
+
+
+def _scene_checks(found: dict[str, Any], _: dict[str, Any]) -> str:
+    if not found.get("checked"):
+        return "nothing to check calibration and offsets with"
+    apart = found.get("disagreement_px")
+    if apart is None or not np.isfinite(apart):
+        return "no silhouettes in two cameras at once"
+    return f"silhouettes of the cameras contradict each other by {number_in_words(apart, 'px')}"
+
+
+def _track(found: dict[str, Any], _: dict[str, Any]) -> str:
+    return f"{found.get('model')} body, {found.get('method')} method, start: {found.get('start')}"
+
+
+def _tracking_result(found: dict[str, Any], _: dict[str, Any]) -> str:
+    overlap = found.get("overlap_mean")
+    lost = {k: n for k, n in found.get("frames_lost_of_limb", {}).items() if n}
+    text = f"{found.get('n_solved')} of {found.get('n_frames')} frames"
+    if overlap is not None:
+        text += f", overlap {overlap:.2f}"
+    if lost:
+        worst = max(lost, key=lambda name: lost[name])
+        return text + f"; {len(lost)} limbs lost at times, most {worst} ({lost[worst]} frames)"
+    return text + "; no limb lost"
+
+
 def _editing(found: dict[str, Any], _: dict[str, Any]) -> str:
     joints = ", ".join(f"{joint} in {n:,} frames" for joint, n in found["frames"].items())
     return f"{len(found['edits'])} edits: {joints}"
@@ -107,12 +142,20 @@ def _normalization(found: dict[str, Any], _: dict[str, Any]) -> str:
     return "; ".join(parts)
 
 
+def _calibration(found: dict[str, Any], _: dict[str, Any]) -> str:
+    sources: dict[int, list[str]] = {}
+    for joint, number in (found.get("axes_from") or {}).items():
+        sources.setdefault(number, []).append(str(joint).replace("_", " "))
+    told = "; ".join(f"{number}: {', '.join(names)}" for number, names in sorted(sources.items()))
+    return f"axes known best by recording {told}" if told else ""
+
+
 def _parameterization(_: dict[str, Any], summary: dict[str, Any]) -> str:
     sources = Counter(joint["axes_from"] for joint in summary["joint_findings"])
     said = {
         "movement": "by their own movements",
         "body": "of the body frame",
-        "reused": "of the other recording",
+        "reused": "of another recording",
         "given": "given",
     }
     counted = ", ".join(f"{n} {said.get(str(s), str(s))}" for s, n in sources.most_common())
@@ -133,7 +176,13 @@ _WORDS: dict[str, Callable[[dict[str, Any], dict[str, Any]], str]] = {
     "discovery": _discovery,
     "orientation": _orientation,
     "skeleton": _skeleton,
+    "calibration": _calibration,
     "normalization": _normalization,
     "parameterization": _parameterization,
     "editing": _editing,
+    "surface": surface_in_words,
+    "scene": _scene,
+    "scene checks": _scene_checks,
+    "track": _track,
+    "tracking result": _tracking_result,
 }

@@ -5,6 +5,7 @@ from kinesphere.data.arrays import Codes as Codes
 from kinesphere.data.arrays import Mask as Mask
 from kinesphere.data.arrays import given_away as given_away
 from kinesphere.data.body import bundled_body as bundled_body
+from kinesphere.data.camera import Camera as Camera
 from kinesphere.data.directions import DIRECTIONS as DIRECTIONS
 from kinesphere.data.directions import UpAxis as UpAxis
 from kinesphere.data.directions import vector_from_direction as vector_from_direction
@@ -33,6 +34,12 @@ from kinesphere.data.recording import OutputKind as OutputKind
 from kinesphere.data.recording import Recording as Recording
 from kinesphere.data.rest import default_origins as default_origins
 from kinesphere.data.rest import pivots as pivots
+from kinesphere.data.scene import BodyChoice as BodyChoice
+from kinesphere.data.scene import Footage as Footage
+from kinesphere.data.scene import Frame as Frame
+from kinesphere.data.scene import Image as Image
+from kinesphere.data.scene import Scene as Scene
+from kinesphere.data.scene import StartChoice as StartChoice
 from kinesphere.data.settings import check_setting as check_setting
 from kinesphere.data.settings import check_settings as check_settings
 from kinesphere.data.settings import setting as setting
@@ -44,3 +51,4 @@ from kinesphere.data.skeleton import Observability as Observability
 from kinesphere.data.skeleton import Skeleton as Skeleton
 from kinesphere.data.solution import Solution as Solution
 from kinesphere.data.surface import Surface as Surface
+from kinesphere.data.twist import TwistJoints as TwistJoints

@@ -11,6 +11,8 @@ from kinesphere.data.arrays import Array, frozen
 from kinesphere.data.history import History
 from kinesphere.errors import BadSurface
 
+MESH = "mesh"
+"""What a surface that nobody gave limbs rides on as a whole."""
 _ADDS_UP = 1e-6  # weights of a vertex are shares; float32 files leave about 1e-7
 
 
@@ -91,6 +93,29 @@ class Surface:
             )
         if (busiest := int((self.weights > 0).sum(axis=1).max(initial=0))) > 4:
             raise BadSurface(f"a vertex rides on {busiest} limbs; 4 are possible")
+
+    @classmethod
+    def without_limbs(
+        cls, vertices: ArrayLike, faces: ArrayLike, history: History = ()
+    ) -> "Surface":
+        """Return a mesh as it comes: in any unit and axes, all of it on one limb, ``mesh``."""
+        points = np.array(vertices, dtype=np.float64)
+        middle = points.mean(axis=0, keepdims=True) if len(points) else np.zeros((1, 3))
+        return cls(
+            vertices=points,
+            faces=np.asarray(faces),
+            limbs=(MESH,),
+            parents=np.array([-1]),
+            joint_centres=middle,
+            ends=middle,
+            weights=np.ones((len(points), 1)),
+            history=history,
+        )
+
+    @property
+    def has_limbs(self) -> bool:
+        """Whether it is known which limb carries what."""
+        return self.limbs != (MESH,)
 
     @property
     def n_vertices(self) -> int:

@@ -1,9 +1,10 @@
-"""Edited angles, the poses that follow from them, and the markers that ride along."""
+"""Edited parameters, the poses that follow from them, and the markers that ride along."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinesphere import __version__
 from kinesphere.data import (
@@ -16,8 +17,17 @@ from kinesphere.data import (
     motion_from_parameters,
 )
 from kinesphere.data.edits import Edit
-from kinesphere.editing.weights import edit_weights
-from kinesphere.errors import BadSetting
+from kinesphere.editing.parameters import edit_parameters
+
+
+@dataclass(frozen=True)
+class Moves:
+    """How edits move each limb in the world: ``after = turns @ before + shifts``."""
+
+    turns: Array
+    """(n_frames, n_limbs, 3, 3)."""
+    shifts: Array
+    """(n_frames, n_limbs, 3) m."""
 
 
 def apply_edits(solution: Solution, edits: Sequence[Edit]) -> Solution:
@@ -50,19 +60,7 @@ def apply_edits(solution: Solution, edits: Sequence[Edit]) -> Solution:
     Sar Dessai, Hornung & Kobbelt 2006, section 5 and figure 5.
     """
     parameters = solution.parameters
-    angles, twists = np.array(parameters.angles), np.array(parameters.twists)
-    changed: dict[str, int] = {}
-    for number, edit in enumerate(edits, start=1):
-        try:
-            column = _column(parameters, edit, angles, twists)
-            weights = edit_weights(
-                edit, parameters.n_frames, parameters.rate, parameters.first_frame
-            )
-        except BadSetting as error:
-            raise BadSetting(f"edit {number}: {error}") from error
-        column += weights * _change(edit, column)
-        column[:] = _half_open(column)
-        changed[edit.joint] = changed.get(edit.joint, 0) + int((weights > 0).sum())
+    edited, changed = edit_parameters(parameters, edits)
     step = Step(
         "editing",
         {"edits": [edit.model_dump(mode="json", exclude_none=True) for edit in edits]},
@@ -72,51 +70,38 @@ def apply_edits(solution: Solution, edits: Sequence[Edit]) -> Solution:
     )
     history = (*solution.history, step)
     skeleton = replace(parameters.skeleton, history=(*parameters.skeleton.history, step))
-    edited = replace(parameters, angles=angles, twists=twists, skeleton=skeleton, history=history)
-    turns, shifts = _moves(parameters, edited)
+    edited = replace(edited, skeleton=skeleton, history=history)
+    moves = find_moves(parameters, edited)
+    motion, recording = solution.motion, solution.recording
+    rotations, origins = moved_poses(motion, moves)
     return replace(
         solution,
         parameters=edited,
-        motion=_moved_motion(solution.motion, turns, shifts, step),
-        recording=_moved_recording(solution.recording, solution.motion, turns, shifts, step),
+        motion=replace(
+            motion, rotations=rotations, origins=origins, history=(*motion.history, step)
+        ),
+        recording=replace(
+            recording,
+            markers=moved_markers(recording, motion, moves),
+            history=(*recording.history, step),
+        ),
     )
 
 
-def _column(parameters: Parameters, edit: Edit, angles: Array, twists: Array) -> Array:
-    """Return a view of the angle that an edit changes, (n_frames,) rad."""
-    names = parameters.skeleton.joint_names
-    if edit.joint not in names:
-        raise BadSetting(f"there is no joint {edit.joint!r}; the joints are {', '.join(names)}")
-    j = names.index(edit.joint)
-    if edit.axis == "twist":
-        return twists[:, j]
-    n_axes = parameters.skeleton.joints[j].n_axes
-    if edit.axis > n_axes:
-        there = ", ".join(str(k + 1) for k in range(n_axes))
-        raise BadSetting(f"{edit.joint} has no axis {edit.axis}; it has {there} and 'twist'")
-    return angles[:, j, edit.axis - 1]
+def find_moves(
+    before: Parameters, after: Parameters, frames: NDArray[np.intp] | None = None
+) -> Moves:
+    """Return how each limb moves in the world from one set of parameters to the other.
 
+    Not at all where the rebuilt poses are the same, or where parameters that are NaN tell none.
 
-def _change(edit: Edit, column: Array) -> Array:
-    """Return what the whole of an edit adds to each angle, (n_frames,) rad."""
-    if edit.add_deg is not None:
-        return np.full(len(column), np.deg2rad(edit.add_deg))
-    assert edit.set_deg is not None
-    return _half_open(np.deg2rad(edit.set_deg) - column)
-
-
-def _half_open(angles: Array) -> Array:
-    """Return angles in (−π, π]; those that are there already unchanged to the bit."""
-    wrapped = np.pi - np.mod(np.pi - angles, 2 * np.pi)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(np.where(np.abs(angles) <= np.pi, angles, wrapped))
-
-
-def _moves(before: Parameters, after: Parameters) -> tuple[Array, Array]:
-    """Return how each limb moves in the world, turns (n, n_limbs, 3, 3) and shifts (n, n_limbs, 3).
-
-    Nothing where the rebuilt poses are the same, or where parameters that are NaN tell none.
+    Parameters
+    ----------
+    frames : (n,)
+        Which; all by default.
     """
+    if frames is not None:
+        before, after = _at(before, frames), _at(after, frames)
     old, new = motion_from_parameters(before), motion_from_parameters(after)
     turns = new.rotations @ np.swapaxes(old.rotations, -1, -2)
     shifts = new.origins - (turns @ old.origins[..., None])[..., 0]
@@ -126,26 +111,41 @@ def _moves(before: Parameters, after: Parameters) -> tuple[Array, Array]:
     still = same | ~np.isfinite(shifts).all(axis=2)
     turns[still] = np.eye(3)
     shifts[still] = 0.0
-    return turns, shifts
+    return Moves(turns, shifts)
 
 
-def _moved_motion(motion: Motion, turns: Array, shifts: Array, step: Step) -> Motion:
-    return replace(
-        motion,
-        rotations=turns @ motion.rotations,
-        origins=(turns @ motion.origins[..., None])[..., 0] + shifts,
-        history=(*motion.history, step),
-    )
+def moved_poses(
+    motion: Motion, moves: Moves, frames: NDArray[np.intp] | None = None
+) -> tuple[Array, Array]:
+    """Return rotations (n, n_limbs, 3, 3) and origins (n, n_limbs, 3) after the moves."""
+    every = slice(None) if frames is None else frames
+    turned = (moves.turns @ motion.origins[every][..., None])[..., 0]
+    return moves.turns @ motion.rotations[every], turned + moves.shifts
 
 
-def _moved_recording(
-    recording: Recording, motion: Motion, turns: Array, shifts: Array, step: Step
-) -> Recording:
-    markers = np.array(recording.markers)
+def moved_markers(
+    recording: Recording, motion: Motion, moves: Moves, frames: NDArray[np.intp] | None = None
+) -> Array:
+    """Return where the markers ride, (n, n_markers, 3) m; those no limb wears stay."""
+    markers = np.array(recording.markers if frames is None else recording.markers[frames])
     for i, limb in enumerate(motion.skeleton.limbs):
         at = [recording.labels.index(label) for label in limb.markers if label in recording.labels]
-        markers[:, at] = (turns[:, i, None] @ markers[:, at, :, None])[..., 0] + shifts[:, i, None]
-    return replace(recording, markers=markers, history=(*recording.history, step))
+        turned = (moves.turns[:, i, None] @ markers[:, at, :, None])[..., 0]
+        markers[:, at] = turned + moves.shifts[:, i, None]
+    return markers
+
+
+def _at(parameters: Parameters, frames: NDArray[np.intp]) -> Parameters:
+    return replace(
+        parameters,
+        root_positions=parameters.root_positions[frames],
+        root_rotations=parameters.root_rotations[frames],
+        angles=parameters.angles[frames],
+        twists=parameters.twists[frames],
+        residuals=parameters.residuals[frames],
+        flags=parameters.flags[frames],
+        moving=parameters.moving[frames],
+    )
 
 
 def _warnings(recording: Recording) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from kinesphere.io.meshes.marks import is_obj, is_ply, is_stl
 from kinesphere.io.registry import Format, register
 
 
@@ -157,7 +158,7 @@ register(
         name="glTF",
         suffixes=(".glb", ".gltf"),
         recognises=_is_gltf,
-        reader="kinesphere.io.rig_gltf:read_gltf_skeleton",
+        reader="kinesphere.io.meshes.gltf:read_gltf",
         writers={
             "Motion": "kinesphere.io.gltf:write_gltf",
             "Solution": "kinesphere.io.gltf:write_solution_gltf",
@@ -194,3 +195,16 @@ register(
         writers={"Solution": "kinesphere.io.solution:write_solution"},
     )
 )
+for _name, _suffix, _is_one in (
+    ("PLY", ".ply", is_ply),
+    ("OBJ", ".obj", is_obj),
+    ("STL", ".stl", is_stl),  # last of all: binary STL is told by a triangle that may be one
+):
+    register(
+        Format(
+            name=_name,
+            suffixes=(_suffix,),
+            recognises=_is_one,
+            reader="kinesphere.io.meshes.read:read_mesh",
+        )
+    )

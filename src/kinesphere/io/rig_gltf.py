@@ -20,7 +20,7 @@ from kinesphere.io.bvh_hierarchy import MOST_JOINTS
 from kinesphere.io.gltf_file import external_files, parse_gltf
 
 
-class _Joints(NamedTuple):
+class RigJoints(NamedTuple):
     """The nodes of a file's skeleton, parents first."""
 
     nodes: list[int]
@@ -43,7 +43,11 @@ def read_gltf_skeleton(path: str | Path) -> Skeleton:
         If the file is damaged or holds no skeleton.
     """
     path = Path(path)
-    joints = _joints(parse_gltf(path).json, path)
+    return rig_skeleton(rig_joints(parse_gltf(path).json, path), path)
+
+
+def rig_skeleton(joints: RigJoints, path: Path) -> Skeleton:
+    """Return the joints of a file as a skeleton, its limbs in their order."""
     places = joints.rest[:, :3, 3]
     bones = [
         Bone(name, parent, places[i] - places[parent] if parent >= 0 else places[i], None)
@@ -57,7 +61,7 @@ def read_gltf_skeleton(path: str | Path) -> Skeleton:
 def write_gltf_rig(motion: Motion, rig: Path, path: Path) -> tuple[str, ...]:
     """Write a rig's file with the motion as its first animation; return what is to be known."""
     file = parse_gltf(rig)
-    joints = _joints(file.json, rig)
+    joints = rig_joints(file.json, rig)
     if tuple(joints.names) != motion.skeleton.limb_names:
         raise BadModel(f"the motion is not on the skeleton of {rig}")
     rest = nearest_rotation(joints.rest[:, :3, :3])
@@ -94,7 +98,8 @@ def write_gltf_rig(motion: Motion, rig: Path, path: Path) -> tuple[str, ...]:
     return ()
 
 
-def _joints(document: dict[str, Any], path: Path) -> _Joints:
+def rig_joints(document: dict[str, Any], path: Path) -> RigJoints:
+    """Return the joints of a file's skeleton; raises UnreadableFile as `read_gltf_skeleton`."""
     try:
         return _found_joints(document, path)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
@@ -103,7 +108,7 @@ def _joints(document: dict[str, Any], path: Path) -> _Joints:
         ) from None
 
 
-def _found_joints(document: dict[str, Any], path: Path) -> _Joints:
+def _found_joints(document: dict[str, Any], path: Path) -> RigJoints:
     nodes = document.get("nodes", [])
     parent_of = {child: i for i, node in enumerate(nodes) for child in node.get("children", [])}
     inside = _inside(document)
@@ -128,19 +133,19 @@ def _found_joints(document: dict[str, Any], path: Path) -> _Joints:
     at = {node: i for i, node in enumerate(order)}
     around = np.eye(4)
     for node in _way(top, parent_of, path)[:0:-1]:
-        around = around @ _matrix(nodes[node])
+        around = around @ node_matrix(nodes[node])
     rest = np.empty((len(order), 4, 4))
     parents = []
     for i, node in enumerate(order):
         parents.append(at.get(parent_of.get(node, -1), -1) if i else -1)
-        rest[i] = (rest[parents[i]] if i else around) @ _matrix(nodes[node])
+        rest[i] = (rest[parents[i]] if i else around) @ node_matrix(nodes[node])
     if not np.isfinite(rest).all() or (np.abs(np.linalg.det(rest[:, :3, :3])) < 1e-12).any():
         raise UnreadableFile(f"{path}: a node of its skeleton has no size")
     names: list[str] = []
     for i, node in enumerate(order):
         name = str(nodes[node].get("name") or f"joint_{i}")
         names.append(name if name not in names else f"{name}_{node}")
-    return _Joints(order, names, parents, rest, around)
+    return RigJoints(order, names, parents, rest, around)
 
 
 def _inside(document: dict[str, Any]) -> set[int]:
@@ -170,7 +175,8 @@ def _way(node: int, parent_of: dict[int, int], path: Path) -> list[int]:
     return way
 
 
-def _matrix(node: dict[str, Any]) -> Array:
+def node_matrix(node: dict[str, Any]) -> Array:
+    """Return where a node stands in its parent, (4, 4)."""
     if "matrix" in node:
         return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
     matrix = np.eye(4)
@@ -184,7 +190,7 @@ def _as_parts(node: dict[str, Any]) -> None:
     """Tell a node's place in parts, as animated nodes must be told."""
     if "matrix" not in node:
         return
-    matrix = _matrix(node)
+    matrix = node_matrix(node)
     del node["matrix"]
     sizes = np.linalg.norm(matrix[:3, :3], axis=0)
     node["translation"] = matrix[:3, 3].tolist()

@@ -22,7 +22,7 @@ from kinesphere.io.opensim_motion import write_mot
 from kinesphere.io.parameters_csv import write_parameters
 from kinesphere.io.skeleton_json import write_skeleton
 from kinesphere.io.solution_arrays import read_solution_arrays, write_solution_arrays
-from kinesphere.io.summary import write_summary
+from kinesphere.io.summary import read_seconds, write_summary
 from kinesphere.io.trc import write_trc
 
 ARRAYS = "solution.npz"
@@ -44,8 +44,10 @@ FILES = (
 """What ``write_solution`` writes by itself."""
 ISB_ANGLES = "isb_angles.csv"
 """Written where joints have names; older folders are whole without it."""
-_BESIDE = (ISB_ANGLES, "report.html", ".DS_Store", "Thumbs.db", "desktop.ini")
-"""What may stand beside them: the report, and what file managers leave wherever they look."""
+_OF_CAMERAS = ("overlays.jpg", "tracking.csv")
+_LEFT_BEHIND = (".DS_Store", "Thumbs.db", "desktop.ini")
+_BESIDE = (ISB_ANGLES, "report.html", *_OF_CAMERAS, *_LEFT_BEHIND)
+"""What may stand beside them: reports, pictures, and what file managers leave behind."""
 _C3D = "c3d"
 
 
@@ -117,7 +119,8 @@ def read_solution(directory: str | Path) -> Solution:
     """Read a solved folder back, arrays to the last bit and history included.
 
     Everything comes from ``solution.npz``, but for what a C3D file needs to be written back
-    without loss, which comes from ``recording.c3d``; the other files are for other programs.
+    without loss, which comes from ``recording.c3d``, and how long stages took, from
+    ``summary.json``; the other files are for other programs.
 
     Raises
     ------
@@ -134,6 +137,7 @@ def read_solution(directory: str | Path) -> Solution:
     if missing := [name for name in wanted if not (directory / name).is_file()]:
         raise UnreadableFile(f"{directory} is not whole: {', '.join(missing)} missing")
     solution = read_solution_arrays(directory / ARRAYS)
+    solution = replace(solution, seconds=read_seconds(directory / "summary.json"))
     recording = solution.recording
     if _C3D not in recording.details:
         return solution

@@ -2,14 +2,15 @@
 
 Arrays with a frame axis are entries of their own, named by their way (``motion.rotations``).
 Everything else (labels, history, the skeleton with its small arrays) is one JSON text in the
-entry ``tree``.
+entry ``tree``. How long stages took is not among it: what the same recording gives is the same
+file, to the last bit.
 """
 
 import json
 import zipfile
 import zlib
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +50,8 @@ _Arrays = dict[str, np.ndarray[Any, Any]]
 def write_solution_arrays(solution: Solution, path: str | Path) -> None:
     """Write ``solution.npz``. Needs every value in ``Recording.details`` to be plain."""
     arrays: _Arrays = {}
-    content = {"format": SOLUTION_FORMAT, "solution": _pack(solution, "", arrays)}
+    timeless = replace(solution, seconds={})
+    content = {"format": SOLUTION_FORMAT, "solution": _pack(timeless, "", arrays)}
     tree = json.dumps(content, ensure_ascii=False, allow_nan=False).encode()
     arrays["tree"] = np.frombuffer(tree, dtype=np.uint8)
     # for those who look into the file without Kinesphere

@@ -1,5 +1,6 @@
 """``summary.json``: per stage what was found, how good it is, how long it took."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -71,3 +72,12 @@ def _clinical(solution: Solution) -> dict[str, Any]:
 def write_summary(solution: Solution, path: str | Path) -> None:
     """Write ``summary.json``; what is not known is null."""
     write_json(summary_of(solution), path)
+
+
+def read_seconds(path: Path) -> dict[str, float]:
+    """Return how long each stage took; nothing where the file does not tell."""
+    try:
+        told = json.loads(path.read_text(encoding="utf-8"))["seconds"]
+        return {str(name): float(seconds) for name, seconds in told.items()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return {}

@@ -22,6 +22,7 @@ from kinesphere.normalization.settings import NormalizationSettings
 
 _SHARE, _MOST_SHARED = 0.1, 1.0  # of the best cost: where nothing is good, differences count less
 _STRIDE = 0.5  # of the best cost: enough to reach over a whole stride
+_ALIKE, _FEWEST = 0.5, 10  # share of a stride's frames that serve in the end, where there are many
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +71,11 @@ def find_default_frames(
     if settings.frames == "many" and not proposal.only_best:
         chosen = cost <= cost[best] + _margin(samples, position, best, cost[best], settings)
     mean = robust_mean_rotations(bodies[chosen][:, None])[0]
+    if _strides(samples, position, best, settings) and chosen.sum() >= _FEWEST:
+        # in the mean of strides pelvis and shoulders face alike: so they do in the nearest half
+        apart = np.where(chosen, rotation_angle(mean.T @ bodies), np.inf)
+        chosen = apart <= np.quantile(apart[chosen], _ALIKE)
+        mean = robust_mean_rotations(bodies[chosen][:, None])[0]
     measured = position.terms | angles
     terms = {name: float(values[best]) for name, values in measured.items()}
     return DefaultFrames(
@@ -97,10 +103,17 @@ def _margin(
     Where nothing is good, differences count less. Somebody who never stands still is averaged over
     whole strides: in each half of one, pelvis and shoulders turn the opposite way.
     """
-    moves = samples.speeds[best] > settings.speed * samples.anatomy.span
-    if moves and position.absolute:
+    if _strides(samples, position, best, settings):
         return _STRIDE * cost
     return position.margin + min(_SHARE * abs(cost), _MOST_SHARED)
+
+
+def _strides(
+    samples: Samples, position: PositionCost, best: int, settings: NormalizationSettings
+) -> bool:
+    """Return whether even the best sample is one of somebody on the move."""
+    moves = samples.speeds[best] > settings.speed * samples.anatomy.span
+    return bool(moves and position.absolute)
 
 
 def _position(

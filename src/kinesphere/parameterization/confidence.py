@@ -61,8 +61,13 @@ class AxesQuality:
         )
 
 
-def assess_axes(samples: JointSamples, axes: Array, find: Finder) -> AxesQuality:
-    """Measure how well phases support axes, (n_axes, 3), that ``find`` got from them."""
+def assess_axes(
+    samples: JointSamples, axes: Array, find: Finder, enough: float = np.inf
+) -> AxesQuality:
+    """Measure how well phases support axes, (n_axes, 3), that ``find`` got from them.
+
+    Halves that differ by more than ``enough`` rad end the comparing: for methods that take long.
+    """
     n_axes = len(axes)
     labels = np.zeros(len(samples.phases), dtype=np.intp)
     pooled = np.zeros((n_axes, 3, 3))
@@ -81,7 +86,7 @@ def assess_axes(samples: JointSamples, axes: Array, find: Finder) -> AxesQuality
         ranges=ranges,
         conditioning=values[:, 2] / np.maximum(values[:, 1], 1e-12),
         explained=explained / max(total, 1e-300),
-        halves=halves_disagreement(samples, axes, labels, find),
+        halves=halves_disagreement(samples, axes, labels, find, enough),
         heights=heights,
     )
 
@@ -156,17 +161,22 @@ def early_share(samples: JointSamples, labels: Labels, n_axes: int, cut: int) ->
     return np.asarray(early / np.maximum(length, 1))
 
 
-def halves_disagreement(samples: JointSamples, axes: Array, labels: Labels, find: Finder) -> Array:
+def halves_disagreement(
+    samples: JointSamples, axes: Array, labels: Labels, find: Finder, enough: float = np.inf
+) -> Array:
     """Return the largest angle between axes found from two halves, (n_axes,) rad.
 
     Three ways to halve: every phase cut in its middle; phases dealt out in turn; the recording cut
     in its middle, where both halves hold enough of every movement. NaN if none was possible.
+    More than ``enough`` rad ends it.
     """
     worst = np.full(len(axes), np.nan)
     for first, second in _splits(samples, labels, len(axes)):
         pairs = [_matched(find(samples.with_phases(half)), axes) for half in (first, second)]
         # an axis that half of its own movement does not show is no axis: as far off as can be
         worst = np.fmax(worst, np.nan_to_num(_between(*pairs), nan=np.pi / 2))
+        if worst.max() > enough:
+            break
     return worst
 
 

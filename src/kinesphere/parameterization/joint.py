@@ -55,8 +55,10 @@ class JointFit:
     """How far halves of the movement contradict each other where its axes still serve."""
 
 
-def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
-    """Find the axes and the rest orientation of one joint.
+def fit_joint(
+    view: JointView, settings: ParameterizationSettings, n_axes: int | None = None
+) -> JointFit:
+    """Find the axes that move a limb, and the rest orientation of its joint.
 
     Parameters
     ----------
@@ -64,6 +66,8 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         The joint; a known name declares how many axes it has and their signs.
     settings
         Methods and limits.
+    n_axes
+        How many axes are looked for, whatever name and settings say.
 
     Returns
     -------
@@ -77,7 +81,7 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         settings = replace(settings, axes=options)
     observed = observed_n_axes(view.samples)
     declared = declared_n_axes(view.name, parse_counts(options.counts))
-    n_axes = declared or observed or 2
+    n_axes = n_axes or declared or observed or 2
     keep = options.on_doubt == "movement"
     if n_axes == 1 and options.method == "universal-joint":
         options = replace(options, method="phase-log-pca")  # that method is for two axes
@@ -107,14 +111,14 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         rest = body_rest(view, axes)
         uncertainty = np.full(n_axes, np.nan)
     added = ""
-    if n_axes == 1 and not _asked_for(view.name, options):
+    if n_axes == 1 and asked_n_axes(view.name, options) is None:
         spread = np.rad2deg(cone_spread(view.samples.positions, axes[0]))
         if spread > options.largest_spread and (side := body_axes(view.name)) is not None:
             across = second_axis(axes[0], rest @ view.long_axis, side[1])
             axes, uncertainty = np.array([across, axes[0]]), np.array([np.nan, uncertainty[0]])
             added = f"{spread:.0f}°"
     if joint_kind(view.name) is None:
-        axes = _first_excursion_positive(view, axes, rest, settings)
+        axes = first_excursion_positive(view, axes, rest, settings)
     findings: dict[str, Json] = {
         "n_axes": len(axes),
         "n_axes_by_data": observed,
@@ -126,9 +130,7 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
         "axes_uncertainty_deg": [
             float(u) if np.isfinite(u) else None for u in np.rad2deg(uncertainty)
         ],
-        "axes_apart_deg": [
-            float(np.rad2deg(np.arccos(np.clip(abs(a @ b), 0, 1)))) for a, b in pairwise(axes)
-        ],
+        "axes_apart_deg": angles_between(axes),
         **_quality_findings(quality),
     }
     kept = ""
@@ -139,10 +141,15 @@ def fit_joint(view: JointView, settings: ParameterizationSettings) -> JointFit:
     return JointFit(axes, rest, source, uncertainty, findings, tuple(doubts), kept, added, loose)
 
 
-def _asked_for(name: str, options: AxesSettings) -> bool:
-    """Return whether the user said how many axes a joint has."""
+def asked_n_axes(name: str, options: AxesSettings) -> int | None:
+    """Return how many axes the user said a joint has; None where nobody did."""
     counts = parse_counts(options.counts)
-    return name in counts or (joint_kind(name) or name) in counts
+    return counts.get(name, counts.get(joint_kind(name) or name))
+
+
+def angles_between(axes: Array) -> list[Json]:
+    """Return the angles in deg between the lines of each axis and the next, (n_axes, 3)."""
+    return [float(np.rad2deg(np.arccos(np.clip(abs(a @ b), 0, 1)))) for a, b in pairwise(axes)]
 
 
 def solve_joint(
@@ -186,7 +193,7 @@ def _height(view: JointView, axis: Array) -> Array:
     return np.array([float(np.median(moving @ axis))])
 
 
-def _first_excursion_positive(
+def first_excursion_positive(
     view: JointView, axes: Array, rest: Array, settings: ParameterizationSettings
 ) -> Array:
     """Return axes turned so that the first large angle about each is positive."""

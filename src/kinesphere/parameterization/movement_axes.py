@@ -109,11 +109,14 @@ def _judged(
 ) -> MovementAxes:
     """Return how good axes from some phases are, and what speaks against them."""
     options = settings.axes
-    quality = assess_axes(samples, axes, find)
+    free = _in_free_motion(n_axes, options)
+    doubtful = 2 * np.deg2rad(options.largest_uncertainty)
+    # a search in free motion takes seconds: once halves contradict each other that is that
+    quality = assess_axes(samples, axes, find, doubtful if free else np.inf)
     if len(axes) < n_axes:
         told = f"only {len(axes)} of {n_axes} main movements is there"
         return MovementAxes(axes, quality, (told,))
-    if _in_free_motion(n_axes, options):
+    if free:
         quality = replace(quality, ranges=_free_ranges(view, axes))
         options = replace(options, smallest_explained=0.0)
     nominal = nominal_axes(view.name, axes) if view.human else None

@@ -59,22 +59,39 @@ def find_movement(
     literal = settings.method == "paper"
     speeds = sample_speeds(positions, rate, 0.0 if literal else settings.window)
     known = np.isfinite(speeds) if calibration is None else np.isfinite(speeds) & calibration
+    threshold, valley = speed_threshold(speeds[known], settings)
+    if literal:
+        with np.errstate(invalid="ignore"):
+            moving = np.asarray(speeds > threshold)
+    else:
+        moving = moving_frames(speeds, threshold, rate, settings)
+    return Movement(moving, runs(moving), speeds, threshold, valley)
+
+
+def speed_threshold(speeds: Array, settings: FilterSettings) -> tuple[float, bool]:
+    """Return the speed in rad/s that parts movement from rest, and whether a valley told it.
+
+    ``speeds``, (n,) rad/s, are without NaN.
+    """
     find = {"paper": paper_threshold, "log-speed": persistence_threshold}.get(settings.method)
     if find is None:
         bounds = np.deg2rad(settings.slowest), np.deg2rad(settings.fastest)
-        found = valley_threshold(speeds[known], *bounds)
+        found = valley_threshold(speeds, *bounds)
     else:
-        found = find(speeds[known])
-    threshold = float(np.deg2rad(settings.fallback)) if found is None else found
+        found = find(speeds)
+    return float(np.deg2rad(settings.fallback)) if found is None else found, found is not None
+
+
+def moving_frames(speeds: Array, threshold: float, rate: float, settings: FilterSettings) -> Mask:
+    """Return which frames belong to a movement, (n_frames,): fast runs, bridged and trimmed.
+
+    ``speeds``, (n_frames,) rad/s, are NaN where unknown.
+    """
     with np.errstate(invalid="ignore"):
-        if literal:
-            moving = np.asarray(speeds > threshold)
-        else:
-            moving = hysteresis(speeds, threshold, threshold / 2)
-            moving = bridge(moving, np.isfinite(speeds), round(settings.bridge * rate))
-            moving = trim(moving, max(1, round(settings.window * rate / 2)))
-            moving = drop_short(moving, round(settings.shortest * rate))
-    return Movement(moving, runs(moving), speeds, threshold, found is not None)
+        moving = hysteresis(speeds, threshold, threshold / 2)
+        moving = bridge(moving, np.isfinite(speeds), round(settings.bridge * rate))
+        moving = trim(moving, max(1, round(settings.window * rate / 2)))
+        return drop_short(moving, round(settings.shortest * rate))
 
 
 def sample_speeds(positions: Array, rate: float, window: float) -> Array:

@@ -90,7 +90,8 @@ class AxesSettings:
     counts: str = setting(
         "",
         "number of axes by joint, e.g. 'left_wrist=1, hip=2'; a name without side means both; "
-        "others by the joint's name, or by the data where it has none",
+        "others by the joint's name, or by the data where it has none, and a third where the limb "
+        "turns about itself on purpose",
     )
     windows: str = setting(
         "",
@@ -229,6 +230,11 @@ class AngleSettings:
     )
     singular: float = setting(
         5.0, "a limb closer than this to the axes' plane is flagged", unit="deg", low=0.0, high=90.0
+    )
+    unwrap: bool = setting(
+        False,
+        "deliver angles and twists that run on beyond a half turn, for limbs that turn on and on, "
+        "instead of jumping from 180 to -180 deg; poses are the same",
     )
 
     def __post_init__(self) -> None:

@@ -22,12 +22,8 @@ from kinesphere.errors import BadSetting
 from kinesphere.geometry.chain import joint_rotations
 from kinesphere.geometry.vectors import lengths
 from kinesphere.parameterization.anatomy import human_plan, without_side
-from kinesphere.parameterization.angles import JointAngles
-from kinesphere.parameterization.joint import (
-    JointFit,
-    fit_joint,
-    solve_joint,
-)
+from kinesphere.parameterization.angles import JointAngles, unwrapped
+from kinesphere.parameterization.joint import JointFit, solve_joint
 from kinesphere.parameterization.measures import (
     lever,
     mid_point_residuals,
@@ -40,6 +36,7 @@ from kinesphere.parameterization.settings import (
     parse_counts,
     parse_windows,
 )
+from kinesphere.parameterization.third_axis import fit_axes
 from kinesphere.parameterization.view import reliable_frames, view_joint
 
 TORN = 0.02  # m, joints closer together than this are never called dislocated
@@ -111,7 +108,7 @@ def parameterize(
             settings,
             human,
         )
-        fit = _reused(joint.name, reuse) or fit_joint(view, settings)
+        fit = _reused(joint.name, reuse) or fit_axes(view, settings)
         solved = solve_joint(view, fit.axes, fit.rest, settings)
         rebuilt = joint_rotations(fit.axes, fit.rest, limb.long_axis, solved.angles, solved.twists)
         mid_point = lever(joint.centre_in_child, limb.length, limb.long_axis)
@@ -140,6 +137,8 @@ def parameterize(
             **result_findings(residuals[:, j], twists[:, j], flags[:, j]),
             **paper_measures(rotations, rebuilt, limb.long_axis, mid_point),
         }
+    if settings.angles.unwrap:
+        angles, twists = unwrapped(angles), unwrapped(twists)
     warnings = stage_warnings(seen, fits, settings.axes.method)
     own = [name for name, fit in fits.items() if fit.source != "reused"]
     if reuse is not None and own:

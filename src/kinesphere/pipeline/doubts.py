@@ -1,5 +1,6 @@
 """What may spoil a solution before a stage can notice: said as a step of the history."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -42,9 +43,9 @@ def with_checks(recording: Recording) -> Recording:
 
 
 def calibration_doubts(
-    motion: Motion, calibration: tuple[float, float] | None, reuse: Skeleton | None
+    motion: Motion, calibration: tuple[float, float] | None, reused: Sequence[Skeleton]
 ) -> tuple[str, ...]:
-    """Return what speaks against a calibration window, or against a solution to be reused."""
+    """Return what speaks against a calibration window, or against solutions to be reused."""
     doubts = []
     length = motion.n_frames / motion.rate
     if calibration is not None and (calibration[0] < 0 or calibration[1] > length):
@@ -53,17 +54,18 @@ def calibration_doubts(
             f"the calibration window {start:g}:{end:g} s reaches beyond the recording, "
             f"which lasts {length:.2f} s; what there is of it was used"
         )
-    if reuse is not None:
+    for number, other in enumerate(reused, start=1):
         pairs = [
-            (limb.length, other.length)
+            (limb.length, its.length)
             for limb in motion.skeleton.limbs
-            for other in reuse.limbs
-            if limb.name == other.name
+            for its in other.limbs
+            if limb.name == its.name
         ]
         ratios = np.array([a / b for a, b in pairs if a > 0 and b > 0])
         if len(ratios) and (off := float(np.median(np.abs(ratios - 1)))) > OTHER_PERSON:
+            which = f" ({number} of {len(reused)})" if len(reused) > 1 else ""
             doubts.append(
-                f"limbs differ by {off:.0%} (median) from those of the solution to be reused: "
-                "axes and rest positions hold for one person only"
+                f"limbs differ by {off:.0%} (median) from those of the solution to be reused"
+                f"{which}: axes and rest positions hold for one person only"
             )
     return tuple(doubts)

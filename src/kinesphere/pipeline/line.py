@@ -1,13 +1,13 @@
 """The straight line: a recording goes in, joint parameters come out."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TypeAlias
 
 from kinesphere import __version__
-from kinesphere.data import Recording, Skeleton, Solution, Step, TopologicalModel
+from kinesphere.data import Json, Recording, Solution, Step, TopologicalModel
 from kinesphere.errors import BadRecording
 from kinesphere.labelling import match_labels
 from kinesphere.normalization import Facing, normalize
@@ -15,8 +15,9 @@ from kinesphere.parameterization import parameterize
 from kinesphere.pipeline.choice import MOTION_ALONE, model_for, with_labels
 from kinesphere.pipeline.doubts import calibration_doubts, with_checks
 from kinesphere.pipeline.motion_alone import discovered, normalized_somehow
+from kinesphere.pipeline.reuse import Source, skeletons_of, with_best_axes
 from kinesphere.pipeline.settings import Settings
-from kinesphere.pipeline.surface import surface_for
+from kinesphere.pipeline.surface import body_for, surface_for
 from kinesphere.quality import orient
 from kinesphere.skeleton import fill_markers, fit_skeleton
 
@@ -33,7 +34,7 @@ def solve(
     *,
     subject: str | None = None,
     calibration: tuple[float, float] | None = None,
-    calibration_from: Solution | Skeleton | None = None,
+    calibration_from: Source | Sequence[Source] | None = None,
     facing: Facing | None = None,
     settings: Settings | None = None,
     progress: Progress | None = None,
@@ -53,7 +54,8 @@ def solve(
     calibration
         (start, end) in s since the first stored frame: where the main movements are performed.
     calibration_from
-        Another recording of the same person, whose axes and rest positions are used again.
+        Another recording of the same person, whose axes and rest positions are used again; of
+        several, for each joint those that are known best.
     facing
         The axis of the world a person looks along in the default position, where the motion does
         not tell.
@@ -75,6 +77,7 @@ def solve(
     if recording.n_frames == 0 or not recording.seen.any():
         raise BadRecording("the recording holds no marker position: nothing to solve")
     clock = _Clock(progress)
+    body = body_for(settings.surface)  # first, so that a file that cannot be used costs no wait
     given = model_for(recording, model, subject)
     with clock.stage("discovery" if given is None else "labelling"):
         if given is None:
@@ -101,15 +104,21 @@ def solve(
         aligned = normalize if given else normalized_somehow
         motion = aligned(motion, settings.normalization, facing)
     with clock.stage("parameterization"):
-        reuse = _skeleton(calibration_from)
-        if doubts := calibration_doubts(motion, calibration, reuse):
-            step = Step("calibration", warnings=doubts, version=__version__)
+        others = skeletons_of(calibration_from)
+        bearing, places = with_best_axes(motion.skeleton, others)
+        reuse = bearing if others else None
+        doubts = calibration_doubts(motion, calibration, others)
+        if doubts or len(others) > 1:
+            found: dict[str, Json] = {}
+            if len(others) > 1:
+                found["axes_from"] = {name: number + 1 for name, number in places.items()}
+            step = Step("calibration", {}, found, doubts, __version__)
             motion = replace(motion, history=(*motion.history, step))
         parameters = parameterize(
             motion, settings.parameterization, calibration=calibration, reuse=reuse
         )
     with clock.stage("surface"):
-        surface, step = surface_for(motion, settings.surface)
+        surface, step = surface_for(motion, settings.surface, body)
         parameters = replace(parameters, history=(*parameters.history, step))
     return Solution(
         recording=oriented,
@@ -119,10 +128,6 @@ def solve(
         seconds=clock.seconds,
         surface=surface,
     )
-
-
-def _skeleton(source: Solution | Skeleton | None) -> Skeleton | None:
-    return source.skeleton if isinstance(source, Solution) else source
 
 
 class _Clock:

@@ -11,6 +11,7 @@ from kinesphere.editing import RetargetSettings, SurfaceSettings
 from kinesphere.errors import BadSetting, UnreadableFile
 from kinesphere.io.bvh_settings import BvhSettings
 from kinesphere.labelling import LabellingSettings
+from kinesphere.markerless.settings import TrackSettings
 from kinesphere.normalization import NormalizationSettings
 from kinesphere.parameterization import ParameterizationSettings
 from kinesphere.pipeline.values import value_from
@@ -26,6 +27,7 @@ class Settings:
     labelling: LabellingSettings = field(default_factory=LabellingSettings)
     orientation: OrientationSettings = field(default_factory=OrientationSettings)
     skeleton: SkeletonSettings = field(default_factory=SkeletonSettings)
+    tracking: TrackSettings = field(default_factory=TrackSettings)
     normalization: NormalizationSettings = field(default_factory=NormalizationSettings)
     parameterization: ParameterizationSettings = field(default_factory=ParameterizationSettings)
     surface: SurfaceSettings = field(default_factory=SurfaceSettings)

@@ -1,9 +1,9 @@
 """What is wrong with a recording, and which way is up in it."""
 
+from kinesphere.data.directions import world_from_up as world_from_up
 from kinesphere.quality.checks import check_recording as check_recording
 from kinesphere.quality.findings import Finding as Finding
 from kinesphere.quality.gaps import Gap as Gap
 from kinesphere.quality.gaps import find_gaps as find_gaps
 from kinesphere.quality.orientation import OrientationSettings as OrientationSettings
 from kinesphere.quality.orientation import orient as orient
-from kinesphere.quality.orientation import world_from_up as world_from_up

@@ -12,12 +12,12 @@ from kinesphere.data import (
     Recording,
     Step,
     TopologicalModel,
-    UpAxis,
     check_settings,
     given_away,
     setting,
     settings_as_json,
 )
+from kinesphere.data.directions import world_from_up
 from kinesphere.quality.body import ENOUGH_FRAMES, find_bodies, find_long_axes, thinned
 from kinesphere.quality.chirality import Chirality, find_chirality
 from kinesphere.quality.up_axis import judge_up
@@ -26,16 +26,6 @@ from kinesphere.quality.upright import find_evidence
 MIRRORED = 0.2
 """At most this share of the body parts is the right way round in a mirrored recording: the
 recordings at hand have 1.00."""
-
-_TURNS: dict[UpAxis, list[list[int]]] = {
-    "+y": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
-    "-y": [[1, 0, 0], [0, -1, 0], [0, 0, -1]],
-    "+z": [[1, 0, 0], [0, 0, 1], [0, -1, 0]],
-    "-z": [[1, 0, 0], [0, 0, -1], [0, 1, 0]],
-    "+x": [[0, -1, 0], [1, 0, 0], [0, 0, 1]],
-    "-x": [[0, 1, 0], [-1, 0, 0], [0, 0, 1]],
-}
-"""Up in the file → the least turn that takes it to +y; rows are the world's axes in the file's."""
 
 
 @dataclass(frozen=True)
@@ -110,14 +100,6 @@ def orient(
         world_from_file=turn @ recording.world_from_file,
         history=(*recording.history, step),
     )
-
-
-def world_from_up(up: UpAxis, mirrored: bool = False) -> Array:
-    """Return the signed permutation that takes ``up`` to +y, (3, 3); determinant −1 if mirrored."""
-    turn = np.array(_TURNS[up], dtype=np.float64)
-    if mirrored:
-        turn[2] *= -1
-    return turn
 
 
 def _turned(markers: Array, turn: Array) -> Array:

@@ -58,7 +58,14 @@ def judge_up(evidence: Evidence, field: UpAxis | None, wanted: UpAxis | None) ->
     found = f"in {share:.0%} of the frames the head is along {seen} from the feet"
     if field is None:
         said = f"the file names no up axis, and only {found}, with a steady floor: up is {seen}"
-        return Judgement(seen, "body", () if strong else (said,))
+        if strong:
+            said = (
+                f"the file names no up axis and no floor shows it: up is {seen} because the head "
+                "is there from the feet; set orientation.up if this person lies, or stands on the "
+                "head, all the time"
+            )
+            return Judgement(seen, "body", () if _has_floor(evidence, seen) else (said,))
+        return Judgement(seen, "body", (said,))
     if strong and (seen[1] == field[1] or _stands(evidence, seen, field)):
         said = f"the file says up is {field}, but {found}: up is {seen}"
         return Judgement(seen, "body", (said,))
@@ -95,6 +102,21 @@ def _stands(evidence: Evidence, seen: UpAxis, field: UpAxis) -> bool:
     sway, floor = evidence.sway, np.abs(evidence.floor)
     is_zero = bool(floor[under] <= ON_FLOOR < floor[across])
     return is_zero or _stays(float(sway[under]), float(sway[across]))
+
+
+def _has_floor(evidence: Evidence, seen: UpAxis) -> bool:
+    """Tell a person who stands from one who does nothing but lie, or stand on the head.
+
+    As `_stands`, against every other end of the body: of somebody on the head it is the end at the
+    head that stays, and lies at zero.
+    """
+    under = DIRECTIONS.index(seen)
+    sway, floor = evidence.sway, np.abs(evidence.floor)
+    opposite, across = under ^ 1, [i for i in range(6) if i // 2 != under // 2]
+    if sway[under] > sway[opposite] and floor[under] > ON_FLOOR:
+        return False
+    is_zero = bool(floor[under] <= ON_FLOOR)
+    return is_zero or _stays(float(sway[under]), float(sway[across].min()))
 
 
 def _stays(floor: float, rival: float) -> bool:

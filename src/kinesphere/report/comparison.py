@@ -9,9 +9,9 @@ from markupsafe import Markup
 
 import kinesphere
 from kinesphere.comparison import Comparison, ParameterComparison
+from kinesphere.data.sticks import side_of
 from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.plots import Curve, curves, dots
-from kinesphere.report.scene import side_of
 from kinesphere.report.tables import Tile, in_words
 from kinesphere.report.wording import number_in_words
 

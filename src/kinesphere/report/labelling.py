@@ -13,8 +13,8 @@ from kinesphere.data import Array, Recording, TopologicalModel
 from kinesphere.errors import KinesphereError
 from kinesphere.quality import orient
 from kinesphere.report.assets_of import asset, environment
+from kinesphere.report.moments import runs
 from kinesphere.report.notices import notices
-from kinesphere.report.scene import runs
 from kinesphere.report.wording import number_in_words
 
 STILLS = 3

@@ -12,14 +12,31 @@ from kinesphere.data import Solution
 from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.bodies import find_bodies
 from kinesphere.report.clinical import clinical_section
+from kinesphere.report.moments import moment_rows
 from kinesphere.report.notices import names_of, notices
 from kinesphere.report.scene import scene_from_solution
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
 
-_SCRIPTS = ("unpack.js", "space.js", "figure.js", "player.js", "curves.js", "heat.js", "page.js")
+SCRIPTS = (
+    "unpack.js",
+    "space.js",
+    "figure.js",
+    "mesh.js",
+    "pick.js",
+    "hand.js",
+    "player.js",
+    "curves.js",
+    "track.js",
+    "heat.js",
+    "selection.js",
+    "paper.js",
+    "page.js",
+)
+"""The page's own program, in the order in which the parts build on each other."""
+_NOTHING = Markup()
 
 
-def report_html(solution: Solution, title: str = "") -> str:
+def report_html(solution: Solution, title: str = "", extra: Markup = _NOTHING) -> str:
     """Return the report of a solution as one self-contained HTML page.
 
     The page holds a player of the motion, the curve of every angle and residual, and a table a
@@ -32,10 +49,13 @@ def report_html(solution: Solution, title: str = "") -> str:
         As ``kinesphere.solve`` returns it.
     title
         A name for the recording; its model and length, if empty.
+    extra
+        A further section: `tracking_section` of a motion without markers.
     """
     joints = joint_rows(solution)
     scene = scene_from_solution(solution)
-    script = Markup("\n".join(asset(name) for name in _SCRIPTS))
+    moments, more = moment_rows(solution)
+    script = Markup("\n".join(asset(name) for name in SCRIPTS))
     page = environment().from_string(asset("page.html.j2"))
     return page.render(
         title=title or "Solved motion",
@@ -47,6 +67,9 @@ def report_html(solution: Solution, title: str = "") -> str:
         limbs=limb_rows(solution),
         steps=step_cards(solution),
         bodies=bodies_section(solution),
+        moments=moments,
+        moments_more=more,
+        extra=extra,
         clinical=clinical_section(solution),
         stride=scene["stride"],
         shown_rate=f"{scene['rate']:g}",

@@ -5,9 +5,12 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from kinesphere.data import Array, Codes, Joint, JointFlag, Mask, Skeleton, Solution
+from kinesphere.data import Array, Codes, Joint, JointFlag, Skeleton, Solution
+from kinesphere.data.sticks import side_of, sticks_of
 from kinesphere.report.bodies import marker_colours
+from kinesphere.report.moments import Moment, find_moments, most_telling, runs
 from kinesphere.report.packing import pack
+from kinesphere.report.surface import pack_surface
 
 SCREEN_RATE = 60.0
 """Hz; a screen shows no more."""
@@ -34,6 +37,8 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
     """
     motion, parameters, recording = solution.motion, solution.parameters, solution.recording
     stride = frame_stride(motion.n_frames, motion.rate)
+    moments = find_moments(solution)
+    mesh, mesh_arrays = pack_surface(solution.surface, solution.skeleton)
     shown = np.arange(0, motion.n_frames, stride)
     columns = _shown_markers(solution)
     colours = marker_colours(solution)
@@ -53,7 +58,9 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
         ],
         "limbs": _limbs(solution.skeleton),
         "joints": _joints(solution.skeleton),
+        "mesh": mesh,
         "arrays": {
+            **mesh_arrays,
             "markers": pack(recording.markers[shown][:, columns], _POSITION_STEP),
             "origins": pack(motion.origins[shown], _POSITION_STEP),
             "quaternions": pack(_quaternions(motion.rotations[shown]), _QUATERNION_STEP),
@@ -61,17 +68,45 @@ def scene_from_solution(solution: Solution) -> dict[str, Any]:
             "twists": pack(np.rad2deg(parameters.twists[shown]), _ANGLE_STEP),
             "joint_residuals": pack(parameters.residuals[shown] * 1e3, _RESIDUAL_STEP),
             "limb_residuals": pack(motion.residuals[shown] * 1e3, _RESIDUAL_STEP),
+            "missing": pack(_missing(solution, stride), 0.5),
         },
         "moving": [runs(column) for column in parameters.moving[shown].T],
-        "flags": [_flag_runs(column) for column in parameters.flags[shown].T],
+        "flags": [_flag_runs(column) for column in _any(parameters.flags, stride).T],
+        "moments": [_moment(m, stride, columns) for m in most_telling(moments)],
+        "improbable": [
+            [m.first // stride, -(-m.end // stride)] for m in moments if m.kind == "improbable"
+        ],
         "measured_s": [_measured(solution, joint) for joint in solution.skeleton.joints],
     }
 
 
-def runs(mask: Mask) -> list[list[int]]:
-    """Return [first, end) of every stretch of True in a mask (n_frames,)."""
-    edges = np.flatnonzero(np.diff(np.r_[False, np.asarray(mask, dtype=bool), False].astype(int)))
-    return [[int(a), int(b)] for a, b in edges.reshape(-1, 2)]
+def _moment(moment: Moment, stride: int, columns: list[int]) -> dict[str, Any]:
+    kind, index = moment.about or ("", 0)
+    if kind == "marker":  # a marker never seen is not in the page
+        kind, index = ("marker", columns.index(index)) if index in columns else ("", 0)
+    first = moment.first // stride
+    return {
+        "first": first,
+        "end": max(first + 1, -(-moment.end // stride)),
+        "kind": moment.kind,
+        "about": [kind, index] if kind else None,
+    }
+
+
+def _any(codes: Codes, stride: int) -> Codes:
+    """Return the flags of every ``stride`` frames together: none is lost by thinning."""
+    starts = np.arange(0, len(codes), stride)
+    return np.bitwise_or.reduceat(codes, starts, axis=0) if len(codes) else codes
+
+
+def _missing(solution: Solution, stride: int) -> Array:
+    """Return how many markers that limbs wear are unseen, at most, in each frame of the page."""
+    recording = solution.recording
+    worn = {label for limb in solution.skeleton.limbs for label in limb.markers}
+    columns = [i for i, label in enumerate(recording.labels) if label in worn]
+    counts = (~recording.seen[:, columns]).sum(axis=1, dtype=np.float64)
+    starts = np.arange(0, len(counts), stride)
+    return np.asarray(np.maximum.reduceat(counts, starts) if len(counts) else counts)[:, None]
 
 
 def _measured(solution: Solution, joint: Joint) -> list[list[float]]:
@@ -96,20 +131,16 @@ def _shown_markers(solution: Solution) -> list[int]:
 
 
 def _limbs(skeleton: Skeleton) -> list[dict[str, Any]]:
-    """Return of each limb the polyline its bone is drawn by, in limb coordinates."""
+    """Return of each limb the sticks it is drawn by, in limb coordinates."""
     drawn = []
-    for i, limb in enumerate(skeleton.limbs):
-        below = [j.centre_in_parent for j in skeleton.joints if j.parent == limb.name]
-        near = np.zeros(3) if i == 0 else skeleton.joints[i - 1].centre_in_child
-        if not below:
-            length = limb.length if np.isfinite(limb.length) else _reach(limb.marker_positions)
-            below = [near + limb.long_axis * length]
+    for i, (limb, sticks) in enumerate(zip(skeleton.limbs, sticks_of(skeleton), strict=True)):
         drawn.append(
             {
                 "name": limb.name,
                 "side": side_of(limb.name),
-                "near": _numbers(near),
-                "far": [_numbers(point) for point in below],
+                "parent": int(skeleton.parents[i]),
+                "near": _numbers(sticks[0].near),
+                "far": [_numbers(stick.far) for stick in sticks],
                 "length": limb.length if np.isfinite(limb.length) else None,
             }
         )
@@ -127,17 +158,6 @@ def _joints(skeleton: Skeleton) -> list[dict[str, Any]]:
         }
         for joint in skeleton.joints
     ]
-
-
-def side_of(name: str) -> str:
-    """Return ``left``, ``right`` or ``middle`` by the name of a limb or joint."""
-    return next((side for side in ("left", "right") if name.startswith(f"{side}_")), "middle")
-
-
-def _reach(positions: Array) -> float:
-    if len(positions) < 2:
-        return 0.1
-    return float(np.linalg.norm(np.ptp(positions, axis=0)))
 
 
 def _quaternions(rotations: Array) -> Array:

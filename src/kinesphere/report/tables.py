@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from kinesphere.data import Array, Joint, JointFlag, Json, PoseFlag, Solution, Step
+from kinesphere.data.sticks import side_of
 from kinesphere.report.notices import Notice, names_of, notices
-from kinesphere.report.scene import side_of
 from kinesphere.report.wording import finding_in_words, number_in_words
 
 

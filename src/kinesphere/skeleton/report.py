@@ -1,10 +1,9 @@
 """What is known of a joint, and what a person should know about it."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinesphere.data import Array, Joint, Limb, Observability, PoseFlag
-from kinesphere.geometry.rotations import mean_rotation, rotation_angle
+from kinesphere.geometry.range_of_motion import range_of_motion, spread_sample
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import unit
 from kinesphere.skeleton.chain import MeasuredJoint
@@ -13,31 +12,6 @@ from kinesphere.skeleton.settings import SkeletonSettings
 
 VERDICT_NOISE = 5e-4
 """m, least noise the verdict on a centre reckons with: no recording is better than that."""
-RANGE_SAMPLE = 300
-"""Most orientations compared pair by pair for a range of motion."""
-
-
-def range_of_motion(relative: Array) -> float:
-    """Return the largest angle between two relative orientations, the oddest 5 % left out, in rad.
-
-    Parameters
-    ----------
-    relative : (n_frames, 3, 3)
-        NaN where unknown.
-
-    Returns
-    -------
-    float
-        0 where fewer than two are known.
-    """
-    known = relative[np.isfinite(relative).all(axis=(1, 2))]
-    if len(known) < 2:
-        return 0.0
-    known = known[_spread(len(known))]
-    off = rotation_angle(mean_rotation(known).T @ known)
-    usual = known[off <= np.quantile(off, 0.95)]
-    trace = np.einsum("aij,bij->ab", usual, usual)
-    return float(np.arccos(np.clip((trace.min() - 1) / 2, -1.0, 1.0)))
 
 
 def describe_joint(
@@ -67,16 +41,9 @@ def describe_joint(
 def _relative(parent: Poses, child: Poses) -> Array:
     """Return ``parent_from_child`` in frames spread over those that show both, (n, 3, 3)."""
     both = np.flatnonzero((parent.flags != PoseFlag.UNSEEN) & (child.flags != PoseFlag.UNSEEN))
-    at = both[_spread(len(both))]
+    at = both[spread_sample(len(both))]
     relative: Array = np.swapaxes(parent.rotations[at], 1, 2) @ child.rotations[at]
     return relative
-
-
-def _spread(count: int) -> NDArray[np.intp]:
-    """Return `RANGE_SAMPLE` indices at most, evenly among ``count``."""
-    return np.unique(
-        np.linspace(0, max(count - 1, 0), min(count, RANGE_SAMPLE)).round().astype(int)
-    )
 
 
 def verdict_on(

@@ -8,9 +8,10 @@ from kinesphere.data import Array, Motion, Step, Surface, bundled_body, settings
 from kinesphere.editing.mesh.girths import fit_girths
 from kinesphere.editing.mesh.merging import on_limbs_of
 from kinesphere.editing.mesh.proportions import begins_of, fit_limbs
+from kinesphere.editing.mesh.rigging import rigged, righted
 from kinesphere.editing.mesh.settings import SurfaceSettings
-from kinesphere.editing.mesh.shape import fit_shape
-from kinesphere.editing.mesh.standing import ups_while_standing
+from kinesphere.editing.mesh.shape import as_large_as, fit_shape
+from kinesphere.editing.mesh.standing import ankle_heights, ups_while_standing
 from kinesphere.editing.mesh.untangle import inverted_faces, softened, untangled
 
 _SOFTENING = (16, 64, 256)
@@ -31,25 +32,28 @@ def attach_surface(
     motion
         Normalized; its standing feet tell how shoes lie in their frames.
     body
-        In any pose near standing, arms to the sides; the bundled one by default.
+        The bundled one by default; or any that stands, arms anywhere between out and hanging, as
+        `read` gives it. One without limbs of its own gets them first (`rigged`).
     settings
 
     Raises
     ------
     BadSurface
-        If the skeleton's limbs are not known by name.
+        If the skeleton's limbs are not known by name, or the mesh is no person.
     """
     settings = settings or SurfaceSettings()
     skeleton = motion.skeleton
-    body = on_limbs_of(bundled_body() if body is None else body, skeleton)
+    body = bundled_body() if body is None else prepared_surface(body, settings)
+    body = on_limbs_of(body, skeleton)
     steps = fit_shape(body, begins_of(skeleton))
-    body = body.shaped(steps)
-    maps = fit_limbs(body, skeleton, ups_while_standing(motion))
+    body = body.shaped(steps) if steps else as_large_as(body, begins_of(skeleton))
+    maps = fit_limbs(body, skeleton, ups_while_standing(motion), ankle_heights(motion))
     if settings.fit_girths:
         maps = fit_girths(body, skeleton, maps, settings.marker_height / 1e3)
     matrices, shifts = maps.matrices()
+    finer = max(1.0, body.n_vertices / bundled_body().n_vertices)  # rounds reach as far, in m
     for rounds in _SOFTENING:
-        vertices = _carried_softly(body, matrices, shifts, rounds)
+        vertices = _carried_softly(body, matrices, shifts, round(rounds * finer))
         vertices = untangled(vertices, body.faces, body.weights, body.vertices, maps.turns)
         turned = inverted_faces(vertices, body.faces, body.weights, body.vertices, maps.turns)
         if not turned.any():
@@ -64,6 +68,7 @@ def attach_surface(
                 for name, scale in zip(body.limbs, maps.scales, strict=True)
             },
             "inverted_triangles": int(turned.sum()),
+            "tall_m": round(float(np.ptp(vertices[:, 1])), 3),
         },
     )
     return replace(
@@ -74,6 +79,13 @@ def attach_surface(
         shapes=(),
         history=(*body.history, step),
     )
+
+
+def prepared_surface(body: Surface, settings: SurfaceSettings) -> Surface:
+    """Return a body that stands as ours does, with limbs; as it is where it does already."""
+    if body.shapes or any(step.name == "rigging" for step in body.history):
+        return body
+    return righted(body, settings) if body.has_limbs else rigged(body, settings)
 
 
 def _carried_softly(body: Surface, matrices: Array, shifts: Array, rounds: int) -> Array:

@@ -7,6 +7,8 @@ import numpy as np
 from kinesphere.data import Array, Skeleton, Surface, default_origins, pivots
 from kinesphere.geometry.rotations import rotation_between
 
+_OWN = 0.5  # weight from which a vertex belongs to a foot
+_RAISED = 0.03  # m, at most
 DOWN = np.array([0.0, -1.0, 0.0])
 _SQUAT, _STOUT = 0.6, 1.6  # limits of a scale: beyond, the skeleton is wrong rather than the body
 _CHAINS = ("upper_arm", "forearm", "thigh", "shank")
@@ -37,7 +39,9 @@ def begins_of(skeleton: Skeleton) -> Array:
     return begins
 
 
-def fit_limbs(body: Surface, skeleton: Skeleton, ups: Array) -> LimbMaps:
+def fit_limbs(
+    body: Surface, skeleton: Skeleton, ups: Array, ankles: Array | None = None
+) -> LimbMaps:
     """Return the map of each limb.
 
     Arms and legs are straightened one after another, each by the least turn onto its neighbour,
@@ -51,6 +55,8 @@ def fit_limbs(body: Surface, skeleton: Skeleton, ups: Array) -> LimbMaps:
         With the skeleton's limbs and about its shape.
     ups : (n_limbs, 3)
         Which way is up, in the frame of each foot, while it stands; other rows are not used.
+    ankles : (n_limbs,) m
+        How high the ankle of each foot is above the floor while it stands; NaN where unknown.
     """
     n = len(body.limbs)
     begins = begins_of(skeleton)
@@ -73,6 +79,8 @@ def fit_limbs(body: Surface, skeleton: Skeleton, ups: Array) -> LimbMaps:
         parent = int(body.parents[limb])
         if kind == "foot":
             turns[limb] = rotation_between(np.array([0.0, 1.0, 0.0]), ups[limb])
+            if ankles is not None and np.isfinite(ankles[limb]):
+                places[limb] += _onto_floor(body, limb, size, float(ankles[limb])) * ups[limb]
         if kind not in (*_CHAINS, "hand") or parent < 0:
             continue
         target = DOWN
@@ -87,6 +95,18 @@ def fit_limbs(body: Surface, skeleton: Skeleton, ups: Array) -> LimbMaps:
         points = turns[parent] @ _unit(body.ends[limb] - body.joint_centres[limb])
         turns[limb] = rotation_between(points, target) @ turns[parent]
     return LimbMaps(turns, body.joint_centres.copy(), scales, places)
+
+
+def _onto_floor(body: Surface, limb: int, size: float, ankle: float) -> float:
+    """Return by how much a foot is raised so that its sole is on the floor, m.
+
+    An ankle's centre is known to a centimetre or two, which would show as a foot in the floor.
+    """
+    own = body.vertices[body.weights[:, limb] > _OWN, 1]
+    if not len(own):
+        return 0.0
+    deep = size * float(body.joint_centres[limb, 1] - own.min())
+    return float(np.clip(deep - ankle, -_RAISED, _RAISED))
 
 
 def _torso(body: Surface, begins: Array, size: float) -> list[tuple[int, Array, Array]]:

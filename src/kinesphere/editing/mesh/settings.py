@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 from kinesphere.data import check_settings, setting
 
+AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
+
 
 @dataclass(frozen=True)
 class SurfaceSettings:
@@ -11,8 +13,23 @@ class SurfaceSettings:
 
     body: str = setting(
         "bundled",
-        "which surface rides on the skeleton; none leaves it out",
-        choices=("bundled", "none"),
+        "which surface rides on the skeleton: bundled, none, or a mesh in a file (OBJ, PLY, STL, "
+        "glTF, GLB)",
+    )
+    up: str = setting(
+        "auto",
+        "which axis of a given mesh points up; auto finds it by its shape or joints",
+        choices=("auto", *AXES),
+    )
+    facing: str = setting(
+        "auto",
+        "which axis of a given mesh its front looks along; auto finds it by its shape or joints",
+        choices=("auto", *AXES),
+    )
+    pose: str = setting(
+        "auto",
+        "how a given mesh without joints stands: arms out (T), half down (A), down (standing)",
+        choices=("auto", "T", "A", "standing"),
     )
     fit_girths: bool = setting(True, "whether markers tell how thick the limbs are")
     marker_height: float = setting(

@@ -1,6 +1,7 @@
 """How tall, broad and long-limbed a body is: the shape whose joints lie as the skeleton's do."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -44,6 +45,26 @@ def fit_shape(body: Surface, begins: Array) -> dict[str, float]:
 
     found = least_squares(residuals, np.zeros(len(at)))
     return dict(zip(names, map(float, found.x), strict=True))
+
+
+def as_large_as(body: Surface, begins: Array) -> Surface:
+    """Return a body without shapes in the size whose distances between joints suit best.
+
+    Parameters
+    ----------
+    body, begins
+        As of `fit_shape`.
+    """
+    ratios = _distances(body, begins) / np.maximum(_distances(body, body.joint_centres), 1e-9)
+    if not np.isfinite(ratios).any():
+        return body
+    size = float(np.nanmedian(ratios))
+    return replace(
+        body,
+        vertices=body.vertices * size,
+        joint_centres=body.joint_centres * size,
+        ends=body.ends * size,
+    )
 
 
 def _distances(body: Surface, begins: Array) -> Array:

@@ -5,12 +5,19 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array, Motion, Surface, default_origins, poses_without_gaps
+from kinesphere.data import (
+    Array,
+    Motion,
+    Surface,
+    TwistJoints,
+    default_origins,
+    poses_without_gaps,
+)
 from kinesphere.errors import BadSetting, BadSurface
 from kinesphere.geometry.skinning import dual_quaternion_blend, linear_blend
 
-Blend: TypeAlias = Literal["linear", "dual-quaternion"]
-BLENDS = ("linear", "dual-quaternion")
+Blend: TypeAlias = Literal["linear", "dual-quaternion", "twist-joints"]
+BLENDS = ("linear", "dual-quaternion", "twist-joints")
 
 
 def skin(
@@ -30,8 +37,9 @@ def skin(
     frames : (n,)
         Which; all by default.
     blend
-        ``"linear"``, as every glTF viewer does; ``"dual-quaternion"`` keeps the volume of what
-        twists.
+        ``"linear"``, the weighted mean of the limbs; ``"dual-quaternion"``, which keeps the volume
+        of what twists; ``"twist-joints"``, linear with twist spread along the limbs, as
+        ``motion.glb`` has it.
 
     Returns
     -------
@@ -47,6 +55,9 @@ def skin(
     if blend not in BLENDS:
         raise BadSetting(f"blend is {blend!r}; known are {', '.join(BLENDS)}")
     rotations, shifts = bind_transforms(surface, motion, frames)
+    if blend == "twist-joints":
+        joints = TwistJoints(surface)
+        return linear_blend(surface.vertices, *joints.weights, *joints.maps(rotations, shifts))
     moved = linear_blend if blend == "linear" else dual_quaternion_blend
     return moved(surface.vertices, surface.weight_limbs, surface.weight_shares, rotations, shifts)
 

@@ -2,10 +2,12 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
+from scipy.sparse import csc_array, csr_array, eye_array
+from scipy.sparse.linalg import splu
 
 from kinesphere.data import Array
 
+_EXPLICIT, _IMPLICIT = 256, 3  # rounds at most one by one; steps beyond
 _ROUNDS = 200
 _STEP = 0.5  # of the way to the middle of the neighbours
 _RINGS = 2  # how far around a triangle vertices give way
@@ -24,9 +26,7 @@ def inverted_faces(
     turns : (n_limbs, 3, 3)
         How each limb was turned from the one to the other.
     """
-    carriers = weights[faces].sum(axis=1).argmax(axis=1)
-    wanted = np.einsum("fij,fj->fi", turns[carriers], _normals(source, faces))
-    return np.asarray(np.einsum("fi,fi->f", wanted, _normals(vertices, faces)) <= 0)
+    return _against(vertices, faces, _wanted(faces, weights, source, turns))
 
 
 def neighbours(faces: NDArray[np.intp], count: int) -> csr_array:
@@ -41,10 +41,20 @@ def neighbours(faces: NDArray[np.intp], count: int) -> csr_array:
 def softened(weights: Array, faces: NDArray[np.intp], rounds: int) -> Array:
     """Return weights that change more slowly over the surface, for the way into another pose.
 
-    An arm lowered by 45° and moved by centimetres folds the armpit where weights change fast.
+    An arm lowered by 45° and moved by centimetres folds the armpit where weights change fast. Many
+    rounds, as a fine mesh needs for the same softness, are taken as a few implicit steps.
     """
     near = neighbours(faces, len(weights))
     degree = np.maximum(np.asarray(near.sum(axis=1)).ravel(), 1.0)[:, None]
+    if rounds > _EXPLICIT:
+        count = len(weights)
+        alone = csr_array(near.multiply(1 / degree))
+        step = rounds / _IMPLICIT / 2
+        system = csc_array(eye_array(count) * (1 + step) - alone * step)
+        solve = splu(system)
+        for _ in range(_IMPLICIT):
+            weights = np.clip(solve.solve(weights), 0.0, 1.0)
+        return np.asarray(weights / weights.sum(axis=1, keepdims=True))
     for _ in range(rounds):
         weights = (weights + (near @ weights) / degree) / 2
     return weights
@@ -58,11 +68,11 @@ def untangled(
     Only those near such a triangle move. Gives up where that does not help: the caller may count
     with `inverted_faces`.
     """
-    moved = vertices.copy()
+    moved, wanted = vertices.copy(), _wanted(faces, weights, source, turns)
     near = neighbours(faces, len(vertices))
     degree = np.asarray(near.sum(axis=1)).ravel()
     for _ in range(_ROUNDS):
-        wrong = inverted_faces(moved, faces, weights, source, turns)
+        wrong = _against(moved, faces, wanted)
         if not wrong.any():
             break
         around = np.zeros(len(vertices))
@@ -73,6 +83,16 @@ def untangled(
         middle = (near @ moved) / np.maximum(degree, 1.0)[:, None]
         moved += step[:, None] * (middle - moved)
     return moved
+
+
+def _wanted(faces: NDArray[np.intp], weights: Array, source: Array, turns: Array) -> Array:
+    """Return where the limb that carries a triangle most took its normal, (n_faces, 3)."""
+    carriers = weights[faces].sum(axis=1).argmax(axis=1)
+    return np.asarray(np.einsum("fij,fj->fi", turns[carriers], _normals(source, faces)))
+
+
+def _against(vertices: Array, faces: NDArray[np.intp], wanted: Array) -> NDArray[np.bool_]:
+    return np.asarray(np.einsum("fi,fi->f", wanted, _normals(vertices, faces)) <= 0)
 
 
 def _normals(vertices: Array, faces: NDArray[np.intp]) -> Array:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kinesphere.data import Array
 from kinesphere.errors import BadRecording
 from kinesphere.io.atomic import replacing
 
@@ -96,3 +97,8 @@ def _glb(said: bytes, binary: bytes, path: str | Path) -> bytes:
     if size > _LARGEST:
         raise BadRecording(f"{path}: {size:,} bytes are more than a GLB file can hold (4 GiB)")
     return struct.pack("<III", _MAGIC, _VERSION, size) + chunks
+
+
+def float32(values: Array) -> NDArray[np.float32]:
+    """Return numbers as glTF holds them."""
+    return values.astype(np.float32)

@@ -6,12 +6,20 @@ from typing import Any
 import numpy as np
 
 from kinesphere import __version__
-from kinesphere.data import Array, Motion, Recording, Solution, Surface
+from kinesphere.data import (
+    Array,
+    Motion,
+    Recording,
+    Solution,
+    Surface,
+    TwistJoints,
+)
 from kinesphere.errors import BadSurface
 from kinesphere.geometry.rotations import quaternions_from_rotations
-from kinesphere.io.gltf.document import INDICES, VERTICES, Document
+from kinesphere.io.gltf.document import Document, float32
 from kinesphere.io.gltf.markers import add_markers
 from kinesphere.io.gltf.poses import FRONT_FROM_BODY, node_poses, rest_places
+from kinesphere.io.gltf.surface import add_surface, add_twist_joints, animate_twist_joints
 
 _STILL = 1e-7  # m; a joint that strays less from its mean place is not animated
 _CONVENTIONS = {
@@ -23,7 +31,8 @@ _CONVENTIONS = {
     "node": "named after its limb, turned as its limb, at the joint towards its parent; where a "
     "joint was measured to come apart its node follows the child",
     "gaps": "an unseen limb keeps its last place in its parent; an unseen marker has scale zero",
-    "skinning": "linear blend",
+    "skinning": "linear blend; nodes LIMB_twist_1 to _4 of upper arms, forearms and thighs turn "
+    "back about the long axis: skin along the limb takes 0, 1/4, 1/2, 3/4 of its twist",
 }
 
 
@@ -58,16 +67,20 @@ def write_gltf(
     document = Document(_asset(motion))
     rest = rest_places(skeleton)
     ground = rest[:, 1].min() if surface is None else surface.vertices[:, 1].min()
+    joints = None if surface is None else TwistJoints(surface)
     _add_limbs(document, motion, rest, float(ground))
     roots = [0]
-    if surface is not None:
-        roots.append(_add_surface(document, surface, rest))
+    if surface is not None and joints is not None:
+        add_twist_joints(document, joints)
+        roots.append(add_surface(document, surface, joints, rest))
     channels: list[dict[str, Any]] = []
     samplers: list[dict[str, Any]] = []
     times = None
     if motion.n_frames:
         times = document.array(motion.times.astype(np.float32), bounds=True)
         _animate_limbs(document, motion, times, channels, samplers)
+        if joints is not None:
+            animate_twist_joints(document, joints, motion, times, channels, samplers)
     if markers is not None:
         group = add_markers(document, markers, times, channels, samplers)
         roots += [] if group is None else [group]
@@ -119,58 +132,12 @@ def _animate_limbs(
             tracks["translation"] = way
         for path, values in tracks.items():
             channels.append({"sampler": len(samplers), "target": {"node": limb, "path": path}})
-            samplers.append({"input": times, "output": document.array(_float32(values))})
+            samplers.append({"input": times, "output": document.array(float32(values))})
 
 
 def rest_way(document: Document, limb: int) -> Array:
     """Return the translation a node has at rest, (3,) m."""
     return np.array(document.json["nodes"][limb]["translation"])
-
-
-def _add_surface(document: Document, surface: Surface, rest: Array) -> int:
-    """Add mesh, skin and the node that carries both; return that node."""
-    inverse = np.tile(np.eye(4, dtype=np.float32), (len(rest), 1, 1))
-    inverse[:, 3, :3] = -rest  # column by column, as glTF wants it
-    skin = document.add(
-        "skins",
-        {
-            "name": "body",
-            "joints": list(range(len(rest))),
-            "skeleton": 0,
-            "inverseBindMatrices": document.array(inverse),
-        },
-    )
-    material = document.add(
-        "materials",
-        {
-            "name": "body",
-            "pbrMetallicRoughness": {
-                "baseColorFactor": [0.72, 0.66, 0.6, 1.0],
-                "metallicFactor": 0.0,
-                "roughnessFactor": 0.85,
-            },
-        },
-    )
-    index = np.uint16 if surface.n_vertices < 2**16 - 1 else np.uint32
-    attributes = {
-        "POSITION": document.array(_float32(surface.vertices), VERTICES, bounds=True),
-        "NORMAL": document.array(_float32(surface.normals()), VERTICES),
-        "JOINTS_0": document.array(
-            surface.weight_limbs.astype(np.uint8 if len(rest) < 256 else np.uint16), VERTICES
-        ),
-        "WEIGHTS_0": document.array(_float32(surface.weight_shares), VERTICES),
-    }
-    primitive = {
-        "attributes": attributes,
-        "indices": document.array(surface.faces.ravel().astype(index), INDICES),
-        "material": material,
-    }
-    mesh = document.add("meshes", {"name": "body", "primitives": [primitive]})
-    return document.add("nodes", {"name": "body", "mesh": mesh, "skin": skin})
-
-
-def _float32(values: Array) -> np.ndarray[Any, np.dtype[np.float32]]:
-    return values.astype(np.float32)
 
 
 def _numbers(vector: Array) -> list[float]:

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from kinesphere.data import Array
-from kinesphere.geometry.rotations import nearest_rotation, rotation_about, tangent_basis
+from kinesphere.geometry.rotations import nearest_rotation, tangent_basis
+from kinesphere.parameterization.axes.joint_kernels import angles_and_loads
 from kinesphere.parameterization.axes.kernels import surprise
-from kinesphere.parameterization.kernels import two_axis_solutions
 
 SPACING = 0.1  # s between frames; people's angles hardly change their course within that
 RESTLESS = np.deg2rad(0.7)  # errors new in every frame; correlated ones of 3° look like 0.5°
@@ -117,7 +117,10 @@ def _descend(motion: FreeMotion, start: Array, steps: int) -> AxesFit:
         return _cost(motion, gaps, axes_at(v), v[4:])
 
     low, high = USUAL - WIDEST * FACTORS, USUAL + WIDEST * FACTORS
-    sizes = np.log(np.maximum(_angles(motion, start)[0].std(axis=0), FLOOR))
+    angles, *_ = angles_and_loads(
+        motion.rotations, start[0], start[1], motion.reference, motion.long_axis, FLATTEST
+    )
+    sizes = np.log(np.maximum(angles.std(axis=0), FLOOR))
     first = np.clip(np.concatenate([sizes, USUAL[3:]]), low, high)
     found = minimize(
         cost,
@@ -131,30 +134,14 @@ def _descend(motion: FreeMotion, start: Array, steps: int) -> AxesFit:
 
 def _cost(motion: FreeMotion, gaps: Array, axes: Array, logs: Array) -> float:
     """Return the negative logarithm of the posterior of axes, (2, 3), and of processes, (8,)."""
-    distal, proximal = axes
-    angles, excess = _angles(motion, axes)
-    swung = rotation_about(proximal, angles[:, 1]) @ distal
-    limb = motion.rotations @ motion.long_axis
-    normal = np.cross(swung, proximal)
-    determinant = (normal * limb).sum(axis=1)
-    side = np.where(determinant < 0, -1.0, 1.0)
-    determinant = side * np.maximum(np.abs(determinant), FLATTEST)
-    loads = np.stack([np.cross(proximal, limb), np.cross(limb, swung), normal], axis=1)
-    loads /= determinant[:, None, None]
+    angles, loads, excess, unit = angles_and_loads(
+        motion.rotations, axes[0], axes[1], motion.reference, motion.long_axis, FLATTEST
+    )
     sizes = np.exp(logs)
     told = surprise(angles, loads, gaps, sizes[:3], sizes[3:6], sizes[6], sizes[7], FLOOR**2)
-    unit = np.log(np.abs(determinant)).sum()
     out = 0.5 * ((excess / REACH) ** 2).sum()
     prior = 0.5 * (((logs - USUAL) / FACTORS) ** 2).sum()
     return float(told + unit + out + prior)
-
-
-def _angles(motion: FreeMotion, axes: Array) -> tuple[Array, Array]:
-    """Return both angles and the twist, (n, 3) rad, and how far the limb is out of reach."""
-    solutions, _, excess = two_axis_solutions(
-        motion.rotations, axes[0], axes[1], motion.reference, motion.long_axis
-    )
-    return np.unwrap(solutions[:, 0], axis=0), excess
 
 
 def _new_in_every_frame(rotations: Array) -> float:

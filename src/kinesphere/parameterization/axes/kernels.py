@@ -1,9 +1,10 @@
-"""The likelihood of a joint's angles as processes in time: a Kalman filter."""
+"""The likelihood of a joint's angles as processes in time, and how fast a limb twists."""
 
 import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.kernels.jit import kernel
+from kinesphere.parameterization.samples import Frames
 
 _ERRORS = 9  # states: each angle with its first two derivatives, then errors, then means
 _MEANS = 12
@@ -145,3 +146,28 @@ def _foretell(
         b = 3 * k
         p[b : b + 3, b : b + 3] += still[k]
         p[_ERRORS + k, _ERRORS + k] += error
+
+
+@kernel
+def turned_between(rotations: Array, before: Frames, after: Frames) -> Array:
+    """Return how far something turns from one frame to another, (n,) rad.
+
+    Parameters
+    ----------
+    rotations : (n_frames, 3, 3)
+        NaN gives NaN.
+    before, after : (n,)
+        Frames from which and to which it turns.
+    """
+    n = len(before)
+    turned = np.empty(n)
+    for f in range(n):
+        a, b = rotations[before[f]], rotations[after[f]]
+        chord = 0.0
+        for i in range(3):
+            for j in range(3):
+                chord += (b[i, j] - a[i, j]) ** 2
+        # the chord is precise for small angles, where the trace is not
+        sine = np.sqrt(chord / 8.0)
+        turned[f] = np.pi if sine > 1.0 else 2.0 * np.arcsin(sine)
+    return turned

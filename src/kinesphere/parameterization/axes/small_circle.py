@@ -7,6 +7,8 @@ from kinesphere.parameterization.axes.fit import pooled_axes
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import AxesSettings
 
+ROUNDING = 1e-9  # of the largest eigenvalue
+
 
 def small_circle(samples: JointSamples, n_axes: int, settings: AxesSettings) -> Array:
     """Find the axes of the circles that the limb's direction draws, phase by phase.
@@ -27,5 +29,8 @@ def small_circle(samples: JointSamples, n_axes: int, settings: AxesSettings) -> 
         centred = samples.positions[start:stop] - samples.positions[start:stop].mean(axis=0)
         scatter[i] = centred.T @ centred
     values, vectors = np.linalg.eigh(scatter)
-    # the middle eigenvalue, the arc's sagitta, is what tells the axis from the tangent
-    return pooled_axes(-scatter, vectors[:, :, 0], values[:, 1] - values[:, 0], n_axes)
+    # the middle eigenvalue, the arc's sagitta, is what tells the axis from the tangent; where it is
+    # rounding, as of two frames, any line across the movement is as good
+    told = values[:, 1] > ROUNDING * values[:, 2]
+    weights = (values[:, 1] - values[:, 0])[told]
+    return pooled_axes(-scatter[told], vectors[told, :, 0], weights, n_axes)

@@ -8,6 +8,7 @@ from scipy.optimize import least_squares
 from kinesphere.data import Array
 from kinesphere.geometry.rotations import mean_rotation, rotation_angle, tangent_basis
 from kinesphere.parameterization.axes.free_motion import FreeMotion, likeliest_axes
+from kinesphere.parameterization.axes.joint_kernels import constraint_residuals
 from kinesphere.parameterization.axes.phase_log_pca import phase_log_pca
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import AxesSettings
@@ -90,21 +91,40 @@ def _solve(q: Array, x0: Array, y0: Array, long_axis: Array, steps: int) -> Fit 
     """
     bases = tangent_basis(x0), tangent_basis(y0)
 
-    def split(v: Array) -> tuple[Array, Array]:
-        x, y = x0 + v[:2] @ bases[0], y0 + v[2:4] @ bases[1]
-        return x / np.linalg.norm(x), y / np.linalg.norm(y)
+    def told(v: Array) -> Array:
+        (x, dx), (y, dy) = (
+            _moved(x0, v[:2] @ bases[0], bases[0]),
+            _moved(y0, v[2:4] @ bases[1], bases[1]),
+        )
+        return constraint_residuals(q, x, y, dx, dy, long_axis, float(v[4]), TWIST_SHARE)
 
     def residuals(v: Array) -> Array:
-        x, y = split(v)
-        cosine = q @ y @ x
-        twisting = q @ np.cross(long_axis, y) @ x
-        variance = (1 - TWIST_SHARE) * np.maximum(1 - cosine**2, 1e-6) + TWIST_SHARE * twisting**2
-        result: Array = (cosine - v[4]) / np.sqrt(variance)
-        return result
+        return told(v)[:, 0]
+
+    def derivatives(v: Array) -> Array:
+        return told(v)[:, 1:]
 
     start = np.array([0, 0, 0, 0, float(np.median(q @ y0 @ x0))])
-    fit = least_squares(residuals, start, loss="soft_l1", f_scale=SCALE, max_nfev=steps)
-    x, y = split(fit.x)
+    fit = least_squares(
+        residuals,
+        start,
+        derivatives,
+        loss="soft_l1",
+        f_scale=SCALE,
+        max_nfev=steps,
+    )
+    x, y = (
+        _moved(v0, moved @ basis, basis)[0]
+        for v0, moved, basis in zip((x0, y0), (fit.x[:2], fit.x[2:4]), bases, strict=True)
+    )
     if abs(fit.x[4]) > np.cos(np.deg2rad(20.0)):
         return None
     return x, y, float(fit.cost)
+
+
+def _moved(start: Array, step: Array, basis: Array) -> tuple[Array, Array]:
+    """Return ``start + step`` of unit length, (3,), and its derivatives along a basis, (2, 3)."""
+    v = start + step
+    size = float(np.linalg.norm(v))
+    v = v / size
+    return v, (basis - np.outer(basis @ v, v)) / size

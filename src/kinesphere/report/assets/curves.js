@@ -33,6 +33,7 @@ class Chart {
     this.visible = false;
     this.stale = true;
     this.margin = { left: 38, right: 6, top: 8, bottom: 16 };
+    [this.unit, this.step, this.scale] = ["°", 5, 1]; // of the labels at the left
     this.residualHeight = 26;
     this.range = this.findRange();
   }
@@ -51,10 +52,17 @@ class Chart {
         if (v > high) high = v;
       }
     }
-    if (!(high >= low)) [low, high] = [-10, 10];
-    if (high - low < 20) [low, high] = [(low + high) / 2 - 10, (low + high) / 2 + 10];
+    const least = this.leastRange();
+    if (!(high >= low)) [low, high] = [-least / 2, least / 2];
+    if (high - low < least) [low, high] = [(low + high - least) / 2, (low + high + least) / 2];
     const room = (high - low) * 0.06;
     return [low - room, high + room];
+  }
+  leastRange() {
+    return 20;
+  }
+  colour(k) {
+    return this.theme.series[k];
   }
   x(time) {
     const wide = this.canvas.clientWidth - this.margin.left - this.margin.right;
@@ -100,10 +108,10 @@ class Chart {
     for (const k of [3, 2, 1, 0]) {
       if (this.hidden.has(k)) continue;
       const { array, series } = this.values(k);
-      context.strokeStyle = theme.series[k];
+      context.strokeStyle = this.colour(k);
       context.lineWidth = k === 3 ? 1.2 : 1.6;
       context.setLineDash(k === 3 ? [4, 3] : []);
-      this.paintCurve(context, array, series, y, 180);
+      this.paintCurve(context, array, series, y, 180); // where an angle wraps there is no line
     }
     context.setLineDash([]);
     this.paintResidual(context, floor + 6, height - margin.bottom);
@@ -116,7 +124,7 @@ class Chart {
     context.textAlign = "right";
     context.textBaseline = "middle";
     const [low, high] = this.range;
-    const step = Math.max(5, niceStep(high - low, 5));
+    const step = Math.max(this.step / this.scale, niceStep(high - low, 5));
     for (let v = Math.ceil(low / step) * step; v <= high; v += step) {
       const y = Math.round(floor - ((v - low) / (high - low)) * (floor - margin.top)) + 0.5;
       context.strokeStyle = Math.abs(v) < 1e-9 ? theme.zero : theme.rule;
@@ -125,7 +133,7 @@ class Chart {
       context.lineTo(width - margin.right, y);
       context.stroke();
       context.fillStyle = theme.dim;
-      context.fillText(`${Math.round(v)}°`, margin.left - 6, y);
+      context.fillText(`${Math.round(v * this.scale)}${this.unit}`, margin.left - 6, y);
     }
     const seconds = niceStep(view.end - view.start, Math.max(2, width / 90));
     context.textAlign = "center";

@@ -20,6 +20,10 @@ class Figure {
   place(pose, p) {
     return add(pose.origin, turned(pose.quaternion, p));
   }
+  jointCentre(joint, poses) {
+    const { parent, centre } = this.scene.joints[joint];
+    return poses && poses[parent] && !centre.includes(null) ? this.place(poses[parent], centre) : null;
+  }
   firstSeen() {
     for (let f = 0; f < this.scene.n_frames; f++) if (this.point("origins", 0, f)) return f;
     return 0;

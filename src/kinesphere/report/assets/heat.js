@@ -1,17 +1,26 @@
-/* The time line: a row a limb, coloured by how far its markers are from a rigid limb. */
-class HeatMap {
+/* The time line: what is missing, what is hard to believe, the file's events, and a row a limb
+   coloured by how far its markers are from a rigid limb. */
+class TimeLine {
   constructor(element, scene, data, view, theme) {
     Object.assign(this, { element, scene, data, view, theme });
     this.canvas = element.querySelector("canvas");
     this.cursor = element.querySelector(".cursor");
     this.left = 92;
     this.row = 10;
-    this.canvas.style.height = `${scene.limbs.length * this.row}px`;
+    this.lanes = [
+      { name: "events", colour: "accent", of: (m) => m.kind === "event" },
+      { name: "gaps", colour: "gap" },
+      { name: "improbable", colour: "improbable" },
+    ].filter((lane) => lane.name !== "events" || scene.moments.some(lane.of));
+    this.lane = 13;
+    this.top = this.lanes.length * this.lane + 3;
+    this.most = Math.max(1, ...data.missing.values);
+    this.canvas.style.height = `${this.top + scene.limbs.length * this.row}px`;
     this.high = this.findHigh();
   }
   /* 98 % of all residuals lie below the hottest colour; what skin does on any limb never has it. */
   findHigh() {
-    const known = [...this.data.limb_residuals.values].filter(Number.isFinite).sort((a, b) => a - b);
+    const known = this.data.limb_residuals.values.filter(Number.isFinite).sort();
     return Math.max(8, known.length ? known[Math.floor(known.length * 0.98)] : 0);
   }
   x(time) {
@@ -35,15 +44,56 @@ class HeatMap {
     return stops[i].map((c, k) => c + (stops[i + 1][k] - c) * (at - i));
   }
   draw() {
-    const { canvas, scene, view, theme, left, row } = this;
+    const { canvas, theme } = this;
     const ratio = window.devicePixelRatio || 1;
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];
     if (!width) return;
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
     const context = canvas.getContext("2d");
-    const columns = canvas.width - Math.round(left * ratio);
-    const image = context.createImageData(Math.max(1, columns), scene.limbs.length);
+    this.paintHeat(context, ratio);
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.font = "9px system-ui, sans-serif";
+    context.textBaseline = "middle";
+    context.textAlign = "right";
+    this.lanes.forEach((lane, i) => this.paintLane(context, lane, i * this.lane, width));
+    this.scene.limbs.forEach((limb, i) => {
+      context.fillStyle = theme.dim;
+      context.fillText(limb.name.replaceAll("_", " "), this.left - 8, this.top + (i + 0.5) * this.row);
+      context.fillStyle = theme.card;
+      context.fillRect(this.left, this.top + (i + 1) * this.row - 0.5, width - this.left, 1);
+    });
+  }
+  paintLane(context, lane, y, width) {
+    const { left, scene, theme, data } = this;
+    context.fillStyle = theme.dim;
+    context.fillText(lane.name, left - 8, y + this.lane / 2);
+    context.fillStyle = theme.rule;
+    context.fillRect(left, y + 1, width - left, this.lane - 3);
+    context.fillStyle = theme[lane.colour];
+    const mark = (first, end, alpha) => {
+      const a = Math.max(left, this.x(first / scene.rate));
+      const b = Math.min(width, this.x(end / scene.rate));
+      context.globalAlpha = alpha;
+      if (b >= a) context.fillRect(a, y + 1, Math.max(2, b - a), this.lane - 3);
+      context.globalAlpha = 1;
+    };
+    if (lane.name === "gaps") {
+      let first = 0;
+      for (let f = 1; f <= data.missing.frames; f++) {
+        const n = data.missing.at(0, first);
+        if (f < data.missing.frames && data.missing.at(0, f) === n) continue;
+        if (n > 0) mark(first, f, 0.35 + (0.65 * n) / this.most);
+        first = f;
+      }
+    } else if (lane.name === "improbable") {
+      for (const [first, end] of scene.improbable) mark(first, end, 1);
+    } else scene.moments.filter(lane.of).forEach((m) => mark(m.first, m.first, 1));
+  }
+  paintHeat(context, ratio) {
+    const { canvas, scene, view, theme, left, top } = this;
+    const columns = Math.max(1, canvas.width - Math.round(left * ratio));
+    const image = context.createImageData(columns, scene.limbs.length);
     const array = this.data.limb_residuals;
     scene.limbs.forEach((_, limb) => {
       for (let c = 0; c < columns; c++) {
@@ -64,16 +114,7 @@ class HeatMap {
     small.height = scene.limbs.length;
     small.getContext("2d").putImageData(image, 0, 0);
     context.imageSmoothingEnabled = false;
-    context.drawImage(small, Math.round(left * ratio), 0, columns, canvas.height);
-    context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    context.font = "9px system-ui, sans-serif";
-    context.textBaseline = "middle";
-    context.textAlign = "right";
-    scene.limbs.forEach((limb, i) => {
-      context.fillStyle = theme.dim;
-      context.fillText(limb.name.replaceAll("_", " "), left - 8, (i + 0.5) * row);
-      context.fillStyle = theme.card;
-      context.fillRect(left, (i + 1) * row - 0.5, width - left, 1);
-    });
+    const from = Math.round(top * ratio);
+    context.drawImage(small, Math.round(left * ratio), from, columns, canvas.height - from);
   }
 }

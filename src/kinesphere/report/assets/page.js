@@ -9,6 +9,8 @@ function themeFromStyles() {
     text: read("text"), dim: read("dim"), faint: read("faint"), card: read("card"),
     rule: read("rule"), zero: read("zero"), grid: read("grid"), accent: read("accent"),
     measured: read("measured"),
+    gap: read("gap"), improbable: read("improbable"), mesh: rgb("mesh").map((c) => c / 255),
+    meshPicked: rgb("mesh-picked").map((c) => c / 255),
     shadow: read("shadow"), outline: read("outline"), marker: read("marker"),
     series: ["axis1", "axis2", "axis3", "twist", "residual"].map(read),
     frame: ["frame-x", "frame-y", "frame-z"].map(read),
@@ -31,9 +33,11 @@ async function start() {
   const last = Math.max(0, scene.n_frames - 1);
   const view = new TimeView(last / scene.rate);
   const player = new Player($("#stage"), scene, data, theme);
+  $("#stage").player = player; // for whoever scripts the page
   const charts = [...document.querySelectorAll(".chart")].map(
     (element) => new Chart(element, Number(element.dataset.joint), scene, data, view, theme));
-  const heat = new HeatMap($("#heat"), scene, data, view, theme);
+  const heat = new TimeLine($("#heat"), scene, data, view, theme);
+  const track = new TrackChart($("#track"), scene, data, view, theme);
   $("#heat-high").textContent = `${heat.high.toFixed(heat.high < 10 ? 1 : 0)} mm`;
 
   /* --- the clock --- */
@@ -51,9 +55,12 @@ async function start() {
     $("#frame").textContent = `frame ${scene.first_frame + frame * scene.stride}`;
     player.draw(frame);
     heat.point(frame);
+    if (!track.element.hidden) track.point(frame);
+    selection.tell(frame);
     charts.forEach((chart) => chart.visible && chart.point(frame));
   }
   function play(on) {
+    if (on === playing) return;
     playing = on;
     $("#play").setAttribute("aria-label", on ? "Pause" : "Play");
     $("#play").classList.toggle("on", on);
@@ -78,6 +85,7 @@ async function start() {
     requestAnimationFrame(() => {
       asked = false;
       heat.draw();
+      if (!track.element.hidden) track.draw();
       charts.forEach((chart) => {
         chart.stale = true;
         if (chart.visible) chart.draw();
@@ -105,6 +113,27 @@ async function start() {
     redraw();
   });
 
+  const selection = new Selection(scene, data, player, charts, track, () => seek(time));
+  const pick = (picked, show) => selection.pick(picked, show);
+
+  /* --- where to look --- */
+  function visit(i) {
+    const { first, about } = scene.moments[i];
+    play(false);
+    if (about) pick({ kind: about[0], index: about[1] }, false);
+    seek(first / scene.rate);
+  }
+  function nextMoment(by) {
+    const frame = toFrame(time);
+    const order = scene.moments.map((_, i) => i);
+    const next = by > 0
+      ? order.find((i) => scene.moments[i].first > frame)
+      : order.reverse().find((i) => scene.moments[i].first < frame);
+    if (next !== undefined) visit(next);
+  }
+  document.querySelectorAll("[data-moment]").forEach((button) =>
+    button.addEventListener("click", () => visit(Number(button.dataset.moment))));
+
   /* --- the hand on the time --- */
   function scrub(drawing) {
     const canvas = drawing.canvas;
@@ -124,7 +153,7 @@ async function start() {
     }, { passive: false });
     canvas.addEventListener("dblclick", () => view.show(0, view.duration));
   }
-  [...charts, heat].forEach(scrub);
+  [...charts, heat, track].forEach(scrub);
   $("#unzoom").addEventListener("click", () => view.show(0, view.duration));
   slider.addEventListener("input", () => {
     play(false);
@@ -137,6 +166,7 @@ async function start() {
       player.show[button.dataset.show] = on;
       button.setAttribute("aria-pressed", on);
     };
+    if (button.dataset.show === "mesh" && !player.body) button.hidden = true;
     set(player.show[button.dataset.show]);
     button.addEventListener("click", () => {
       set(!player.show[button.dataset.show]);
@@ -164,6 +194,15 @@ async function start() {
     });
   });
 
+  const look = (yaw, pitch, zoom = 1) => {
+    player.orbit(yaw, pitch);
+    player.zoom(zoom);
+    player.draw();
+  };
+  const faster = (by) => {
+    const speed = $("#speed");
+    speed.selectedIndex = Math.max(0, Math.min(speed.options.length - 1, speed.selectedIndex + by));
+  };
   const keys = {
     " ": () => play(!playing),
     ArrowLeft: (event) => seek(time - (event.shiftKey ? 1 : 1 / scene.rate)),
@@ -175,16 +214,35 @@ async function start() {
     x: () => $('[data-show="axes"]').click(),
     f: () => $('[data-show="frames"]').click(),
     n: () => $('[data-show="names"]').click(),
+    o: () => player.body && $('[data-show="mesh"]').click(),
     r: () => player.reset(),
+    a: () => look(0.1, 0), d: () => look(-0.1, 0), w: () => look(0, 0.1), s: () => look(0, -0.1),
+    "+": () => look(0, 0, 1 / 1.15), "=": () => look(0, 0, 1 / 1.15), "-": () => look(0, 0, 1.15),
+    ",": () => faster(-1), ".": () => faster(1),
+    j: () => selection.step(1), J: () => selection.step(-1),
+    "]": () => nextMoment(1), "[": () => nextMoment(-1),
+    Escape: () => pick(null),
   };
   document.addEventListener("keydown", (event) => {
-    const typing = ["SELECT", "TEXTAREA"].includes(event.target.tagName);
+    const typing = ["TEXTAREA"].includes(event.target.tagName);
     if (typing || event.ctrlKey || event.metaKey || event.altKey || !keys[event.key]) return;
+    if (event.target.tagName === "SELECT" && event.key !== "Escape") return; // it has keys of its own
     if (event.key === " " && ["BUTTON", "SUMMARY"].includes(event.target.tagName)) return;
     if (event.target.type === "range" && event.key.startsWith("Arrow")) return;
     event.preventDefault();
     keys[event.key](event);
   });
+
+  onPaper(() => {
+    Object.assign(theme, themeFromStyles());
+    heat.draw();
+    charts.forEach((chart) => {
+      chart.draw();
+      chart.point(toFrame(time));
+    });
+    seek(time);
+  });
+  pick(null);
   document.body.classList.add("ready");
   redraw();
 }

@@ -5,12 +5,17 @@ class Player extends Figure {
     Object.assign(this, { canvas, theme });
     this.context = canvas.getContext("2d");
     this.camera = new Camera();
-    this.show = { markers: true, bones: true, axes: false, frames: false, names: false };
+    this.body = BodyMesh.of(scene, data);
+    this.picker = new Picker(this);
+    this.picked = null;
+    this.pointed = null;
+    this.onpick = () => {};
+    this.show = { markers: true, bones: true, mesh: Boolean(this.body), axes: false, frames: false, names: false };
     this.follow = true;
     this.frame = this.firstSeen();
     this.home = this.centreAt(this.frame) || [0, 0.95, 0];
     this.reset();
-    this.listen();
+    this.hand = new Hand(this);
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
@@ -29,42 +34,15 @@ class Player extends Figure {
     const anterior = root ? turned(root.quaternion, [1, 0, 0]) : [0, 0, 1];
     return Math.atan2(anterior[0], anterior[2]);
   }
-  listen() {
-    const held = new Map();
-    const canvas = this.canvas;
-    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("pointerdown", (event) => {
-      canvas.setPointerCapture(event.pointerId);
-      held.set(event.pointerId, [event.offsetX, event.offsetY]);
-    });
-    const release = (event) => held.delete(event.pointerId);
-    canvas.addEventListener("pointerup", release);
-    canvas.addEventListener("pointercancel", release);
-    canvas.addEventListener("pointermove", (event) => {
-      const before = held.get(event.pointerId);
-      if (!before) return;
-      const now = [event.offsetX, event.offsetY];
-      const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
-      if (held.size === 2) {
-        const [other] = [...held].filter(([id]) => id !== event.pointerId).map(([, p]) => p);
-        const apart = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
-        this.zoom(apart(before) / apart(now));
-        this.camera.pan(dx / 2, dy / 2);
-      } else if (event.shiftKey || event.buttons & 6) {
-        this.camera.pan(dx, dy);
-      } else {
-        this.camera.yaw -= dx * 0.008;
-        this.camera.pitch = Math.max(-1.5, Math.min(1.55, this.camera.pitch + dy * 0.008));
-      }
-      held.set(event.pointerId, now);
-      this.draw();
-    });
-    canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      this.zoom(Math.exp(Math.max(-60, Math.min(60, event.deltaY)) * 0.0022));
-      this.draw();
-    }, { passive: false });
-    canvas.addEventListener("dblclick", () => this.reset());
+  orbit(yaw, pitch) {
+    this.camera.yaw += yaw;
+    this.camera.pitch = Math.max(-1.5, Math.min(1.55, this.camera.pitch + pitch));
+  }
+  pointAt(pointed) {
+    if (this.picker.name(pointed) === this.picker.name(this.pointed)) return;
+    this.pointed = pointed;
+    this.canvas.classList.toggle("pointing", Boolean(pointed));
+    this.draw();
   }
   zoom(k) {
     this.camera.distance = Math.max(0.3, Math.min(40, this.camera.distance * k));
@@ -86,17 +64,31 @@ class Player extends Figure {
     if (this.follow) this.camera.target = this.centreAt(frame) || this.camera.target;
     this.camera.aim(width, height);
     const poses = this.scene.limbs.map((_, i) => this.pose(i, frame));
-    const bones = this.show.bones ? this.bones(poses) : [];
+    this.posesNow = poses;
+    const sticks = this.bones(poses);
+    const bones = this.show.bones ? sticks : [];
     this.paintFloor();
-    this.paintShadow(bones);
+    this.paintShadow(this.show.bones || (this.show.mesh && this.body) ? sticks : []);
+    this.paintBody(poses, width, height, ratio);
     const items = [];
     if (this.show.bones) this.addTrunks(items, bones);
     for (const bone of bones) this.addBone(items, bone);
     if (this.show.markers) this.addMarkers(items, frame);
     if (this.show.frames) this.addFrames(items, poses);
-    if (this.show.axes) this.addAxes(items, poses);
+    this.addAxes(items, poses);
     items.sort((a, b) => b.depth - a.depth).forEach((item) => item.paint());
     if (this.show.names) this.paintNames(bones, frame);
+    this.picker.paint(poses, frame);
+  }
+  paintBody(poses, width, height, ratio) {
+    if (!this.show.mesh || !this.body) return;
+    const { context, camera, theme, picked } = this;
+    const limb = picked && picked.kind !== "marker" ? picked.index + (picked.kind === "joint") : -1;
+    const body = this.body.draw(poses, camera, width, height, ratio, theme, limb);
+    if (!body) return;
+    context.globalAlpha = this.show.bones ? 0.55 : 1;
+    context.drawImage(body, 0, 0, width, height);
+    context.globalAlpha = 1;
   }
   paintFloor() {
     const { context, camera, theme } = this;
@@ -261,7 +253,8 @@ class Player extends Figure {
   }
   addAxes(items, poses) {
     const length = 0.08 * this.height();
-    this.scene.joints.forEach((joint) => {
+    this.scene.joints.forEach((joint, index) => {
+      if (!this.show.axes && !(this.picked?.kind === "joint" && this.picked.index === index)) return;
       const pose = poses[joint.parent];
       if (!pose || joint.centre.includes(null)) return;
       const centre = this.place(pose, joint.centre);

@@ -1,0 +1,1 @@
+"""Markerless capture, measured."""

@@ -1,0 +1,109 @@
+"""Films whose truth is known, tracked: the paper's two sequences and what goes beyond them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchmarks.markerless.given_start import disturbed_start
+from benchmarks.markerless.measures import Errors, errors_of
+from kinesphere.data import BodyChoice, bundled_body
+from kinesphere.errors import KinesphereError
+from kinesphere.markerless.settings import TrackSettings
+from kinesphere.markerless.tracker import track
+from kinesphere.synthetic.film import another_person, make_film
+
+
+@dataclass(frozen=True)
+class Case:
+    """One film and how it is tracked."""
+
+    name: str
+    movement: str
+    conditions: str = "plain"
+    method: str = "region"
+    n_cameras: int = 4
+    other: bool = False
+    """A person built 3 to 8 % unlike the model, whose shape is fitted; else the true shape."""
+    masks: bool = False
+    given: bool = False
+    """Whether the first pose is given but for 2° and 8 mm; else it is found."""
+    seeds: tuple[int, ...] = (1,)
+    mean: float | None = None
+    """deg, what the mean absolute error of the elbows is to stay below."""
+    rms: float | None = None
+    joints: float | None = None
+    """mm."""
+
+
+CASES = (
+    Case("arms, true shape", "arms", rms=1.2, joints=10),
+    Case("push-ups, true shape", "push-ups", given=True, rms=1.2, joints=10),
+    Case("arms, shape fitted", "arms", other=True, mean=1.7, rms=2.3, joints=10),
+    Case(
+        "push-ups, shape fitted", "push-ups", other=True, given=True, mean=1.7, rms=2.3, joints=10
+    ),
+    Case("turn, three cameras", "turn", n_cameras=3, other=True),
+    Case("whole body", "body", other=True),
+    Case("arms, perfect masks", "arms", masks=True, rms=0.7, joints=3),
+    Case(
+        "arms in clutter", "arms", "clutter", other=True, given=True, seeds=(1, 2, 3, 4, 5), rms=4.0
+    ),
+    Case(
+        "arms in clutter, plain level set", "arms", "clutter", "level-set", other=True, given=True
+    ),
+    Case("arms in clutter, coupled", "arms", "clutter", "coupled", other=True, given=True),
+    Case("arms, level set", "arms", method="level-set"),
+)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a case gave with one seed."""
+
+    case: Case
+    seed: int
+    errors: Errors | None
+    failed: str = ""
+    """Why there is nothing to measure."""
+
+    @property
+    def missed(self) -> bool:
+        """Whether a limit of the case is passed, or a limb lost."""
+        if self.errors is None:
+            return True
+        e, c = self.errors, self.case
+        pairs = ((e.elbow_mean, c.mean), (e.elbow_rms, c.rms), (e.joints_mean, c.joints))
+        asked = any(limit is not None for _, limit in pairs)
+        return any(limit is not None and value > limit for value, limit in pairs) or (
+            asked and e.frames_astray + e.frames_unsolved > 0
+        )
+
+
+def outcomes(only: str = "", n_frames: int = 300) -> Iterator[Outcome]:
+    """Yield the outcome of every case whose name holds ``only``, seed after seed."""
+    for case in CASES:
+        if only in case.name:
+            for seed in case.seeds:
+                yield _outcome(case, seed, n_frames)
+
+
+def _outcome(case: Case, seed: int, n_frames: int) -> Outcome:
+    model = bundled_body()
+    person = another_person(model, np.random.default_rng([seed, 77])) if case.other else model
+    film = make_film(
+        seed,
+        case.movement,
+        conditions=case.conditions,
+        n_frames=n_frames,
+        n_cameras=case.n_cameras,
+        surface=person,
+        masks=case.masks,
+    )
+    scene = replace(film.scene, body=BodyChoice(fit=case.other))
+    try:
+        start = disturbed_start(film, model, seed) if case.given else None
+        tracked = track(scene, model, TrackSettings(method=case.method), start=start)
+    except KinesphereError as error:
+        return Outcome(case, seed, None, str(error))
+    return Outcome(case, seed, errors_of(tracked, film))

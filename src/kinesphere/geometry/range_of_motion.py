@@ -1,0 +1,40 @@
+"""How far a joint turns: the widest angle between its orientations."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.geometry.rotations import mean_rotation, rotation_angle
+
+Array = NDArray[np.float64]
+RANGE_SAMPLE = 300
+"""Most orientations compared pair by pair for a range of motion."""
+
+
+def range_of_motion(relative: Array) -> float:
+    """Return the largest angle between two relative orientations, the oddest 5 % left out, in rad.
+
+    Parameters
+    ----------
+    relative : (n_frames, 3, 3)
+        NaN where unknown.
+
+    Returns
+    -------
+    float
+        0 where fewer than two are known.
+    """
+    known = relative[np.isfinite(relative).all(axis=(1, 2))]
+    if len(known) < 2:
+        return 0.0
+    known = known[spread_sample(len(known))]
+    off = rotation_angle(mean_rotation(known).T @ known)
+    usual = known[off <= np.quantile(off, 0.95)]
+    trace = np.einsum("aij,bij->ab", usual, usual)
+    return float(np.arccos(np.clip((trace.min() - 1) / 2, -1.0, 1.0)))
+
+
+def spread_sample(count: int) -> NDArray[np.intp]:
+    """Return `RANGE_SAMPLE` indices at most, evenly among ``count``."""
+    return np.unique(
+        np.linspace(0, max(count - 1, 0), min(count, RANGE_SAMPLE)).round().astype(int)
+    )

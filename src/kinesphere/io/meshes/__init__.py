@@ -1,0 +1,1 @@
+"""Meshes that somebody brings: OBJ, PLY, STL, glTF."""

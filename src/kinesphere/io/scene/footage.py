@@ -1,0 +1,111 @@
+"""The cameras' streams side by side: one frame an instant."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from kinesphere.data import Camera, Frame, Image, Mask
+from kinesphere.errors import UnreadableFile
+from kinesphere.io.scene.streams import ImageFolder, Stream, note
+
+_HALF = 127
+
+
+@dataclass
+class RecordedFootage:
+    """Images and masks of every camera, decoded as they are asked for."""
+
+    cameras: tuple[Camera, ...]
+    streams: tuple[Stream, ...]
+    masks: tuple[Stream | None, ...]
+    image_offsets: tuple[int, ...]
+    """Number of the image that shows frame 0."""
+    mask_offsets: tuple[int, ...]
+    references: tuple[Stream | None, ...]
+    reference_offsets: tuple[int, ...]
+    notes: list[str] = field(default_factory=list)
+    """What went wrong while reading, a sentence each."""
+
+    def frames(self, start: int, stop: int, step: int = 1) -> Iterator[Frame]:
+        """Yield frames ``start``, ``start + step``, … before ``stop``."""
+        images, masks, references = (
+            [
+                None if s is None else s.images(start + o, stop + o)
+                for s, o in zip(streams, offsets, strict=True)
+            ]
+            for streams, offsets in (
+                (self.streams, self.image_offsets),
+                (self.masks, self.mask_offsets),
+                (self.references, self.reference_offsets),
+            )
+        )
+        for index in range(start, stop):
+            shown, shapes, compared = (
+                [None if stream is None else next(stream) for stream in streams]
+                for streams in (images, masks, references)
+            )
+            if (index - start) % step == 0:
+                yield Frame(
+                    index,
+                    tuple(self._fitting(c, i, index) for c, i in enumerate(shown)),
+                    tuple(self._mask(c, i, index) for c, i in enumerate(shapes)),
+                    tuple(self._mask(c, i, index) for c, i in enumerate(compared)),
+                )
+        for stream in (*self.streams, *self.masks):
+            for sentence in () if stream is None else stream.notes:
+                note(self.notes, sentence)
+
+    def _fitting(self, c: int, image: Image | None, index: int) -> Image | None:
+        camera = self.cameras[c]
+        if image is None or image.shape[:2] == (camera.height, camera.width):
+            return image
+        note(
+            self.notes,
+            f"{camera.name}: from frame {index} images are {image.shape[1]} × {image.shape[0]} "
+            f"pixels instead of {camera.width} × {camera.height}; they are left out",
+        )
+        return None
+
+    def _mask(self, c: int, image: Image | None, index: int) -> Mask | None:
+        fitting = self._fitting(c, image, index)
+        return None if fitting is None else np.asarray(fitting.max(axis=2) > _HALF)
+
+
+def mask_offset(masks: Stream, images: Stream, offset: int, first_mask: int | None) -> int:
+    """Return the place, among the masks, of the one that belongs to the scene's frame 0.
+
+    Masks in a folder carry the numbers of the images they belong to: of image files the same
+    number, of a video's frames the number counted from 0, unless there are as many masks as
+    frames, or ``first_mask`` says which belongs to the first image.
+    """
+    if not isinstance(masks, ImageFolder):
+        return offset
+    if first_mask is None:
+        if isinstance(images, ImageFolder) and images.n_frames > 1:
+            first_mask = images.first_number
+        elif len(masks.files) == images.n_frames:
+            first_mask = masks.first_number
+        else:
+            first_mask = 0
+    return offset + (first_mask - masks.first_number) // masks.step
+
+
+def median_plate(stream: Stream, most: int = 25) -> Image:
+    """Return the median of up to ``most`` images, evenly spread: the scene without what moves.
+
+    Raises
+    ------
+    UnreadableFile
+        If no image can be had.
+    """
+    every = max(1, stream.n_frames // most)
+    kept = [
+        image
+        for i, image in enumerate(stream.images(0, stream.n_frames))
+        if i % every == 0 and image is not None
+    ]
+    if not kept:
+        raise UnreadableFile(f"{stream.path}: no image of the empty scene can be read")
+    plate: Image = np.median(np.stack(kept), axis=0).astype(np.uint8)
+    return plate

@@ -1,0 +1,133 @@
+"""What was found, frame by frame, gathered into a tracked motion."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array, Frame, History, Mask, Scene
+from kinesphere.markerless.fit import Fitter
+from kinesphere.markerless.kernels.contour import NOWHERE
+from kinesphere.markerless.pose import posed
+from kinesphere.markerless.tracked import TrackedMotion
+from kinesphere.markerless.tracking import Found
+
+
+@dataclass(eq=False)
+class Account:
+    """Arrays of a scene's length that are filled as frames are tracked."""
+
+    scene: Scene
+    fitter: Fitter
+    masks: bool
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        body, n = self.fitter.body, self.scene.n_frames
+        limbs, cameras = len(body.house_limbs), len(self.scene.cameras)
+        self._parameters = np.full((n, body.chain.n_dofs), np.nan)
+        self._rotations = np.full((n, limbs, 3, 3), np.nan)
+        self._origins = np.full((n, limbs, 3), np.nan)
+        self._overlap = np.full((n, cameras), np.nan)
+        self._support = np.full((n, limbs), np.nan)
+        self._lost = np.zeros((n, limbs), dtype=bool)
+        self._entered = np.zeros(n, dtype=bool)
+        names = body.chain.limb_names
+        self._own = [names.index(name) for name in body.house_limbs]
+
+    @property
+    def n_entered(self) -> int:
+        """How many frames there are so far."""
+        return int(self._entered.sum())
+
+    def enter(self, frame: Frame, found: Found, seconds: float) -> None:
+        """Take down one frame; one in which no camera saw anything stays empty."""
+        self._entered[frame.index] = True
+        self.seconds["tracking"] = self.seconds.get("tracking", 0.0) + seconds
+        if not self.fitter.open_eyes:
+            return
+        body, i = self.fitter.body, frame.index
+        at = posed(body.chain, found.pose)
+        self._parameters[i] = body.parameters(found.pose)
+        self._rotations[i] = at.rotations[self._own]
+        self._origins[i] = at.centres[self._own]
+        self._support[i] = found.support[self._own]
+        self._lost[i] = found.lost[self._own]
+        self._overlap[i] = self._overlaps(frame, body.skinned(at))
+
+    def _overlaps(self, frame: Frame, points: Array) -> Array:
+        """Return intersection over union with given masks, else with what colours say."""
+        out = np.full(len(self.fitter.eyes), np.nan)
+        for i, eye in enumerate(self.fitter.eyes):
+            given = frame.references[i] if frame.references[i] is not None else frame.masks[i]
+            if not eye.evidence.seeing:
+                continue
+            model = eye.canvas.draw(points).limbs != NOWHERE
+            person: NDArray[np.bool_]
+            if given is not None:
+                person = eye.canvas.view.image(given) > 127
+            else:
+                model, person = eye.evidence.person(model)
+            union = float((model | person).sum())
+            out[i] = (model & person).sum() / union if union else np.nan
+        return out
+
+    def warnings(self) -> tuple[str, ...]:
+        """Return what a person should know, a sentence each."""
+        said = []
+        empty = int((self._entered & np.isnan(self._parameters).any(axis=1)).sum())
+        if empty:
+            said.append(f"in {empty} of {len(self._entered)} frames no camera has an image")
+        share = self._lost.mean(axis=0)
+        for name, lost in zip(self.fitter.body.house_limbs, share, strict=True):
+            if lost > 0.02:
+                said.append(f"{name} is held lost in {lost:.0%} of the frames")
+        return tuple(said)
+
+    def tracked(self, history: History) -> TrackedMotion:
+        """Return all of it."""
+        body = self.fitter.body
+        house = {name: i for i, name in enumerate(body.house_limbs)}
+        parents = []
+        for limb in self._own:
+            above = int(body.chain.parents[limb])
+            while above >= 0 and body.chain.limb_names[above] not in house:
+                above = int(body.chain.parents[above])
+            parents.append(house[body.chain.limb_names[above]] if above >= 0 else -1)
+        lost: Mask = self._lost
+        return TrackedMotion(
+            body=body,
+            parameter_names=body.parameter_names,
+            parameters=self._parameters,
+            limb_names=body.house_limbs,
+            limb_parents=tuple(parents),
+            joint_names=tuple(_joint_name(name) for name in body.house_limbs[1:]),
+            rotations=self._rotations,
+            origins=self._origins,
+            ends=(body.ends - body.chain.centres)[self._own],
+            overlap=self._overlap,
+            support=self._support,
+            lost=lost,
+            rate=self.scene.rate,
+            seconds=dict(self.seconds),
+            history=history,
+        )
+
+
+_JOINTS = {
+    "trunk": "lumbar",
+    "head": "neck",
+    "upper_arm": "shoulder",
+    "forearm": "elbow",
+    "hand": "wrist",
+    "thigh": "hip",
+    "shank": "knee",
+    "foot": "ankle",
+}
+
+
+def _joint_name(limb: str) -> str:
+    for side in ("left_", "right_"):
+        if limb.startswith(side):
+            return side + _JOINTS.get(limb.removeprefix(side), limb.removeprefix(side))
+    return _JOINTS.get(limb, limb)

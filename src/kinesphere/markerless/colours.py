@@ -1,0 +1,154 @@
+"""Evidence from colours: of limbs, of what lies beside them, of the rest of the room."""
+
+from functools import cache
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array, Mask
+from kinesphere.markerless.evidence import MOST, STRIDE, Levels
+from kinesphere.markerless.kernels.colour import (
+    FLOOR,
+    blurred_kernel,
+    colour_samples_kernel,
+    count_far_kernel,
+    count_lines_kernel,
+    region_score_kernel,
+)
+from kinesphere.markerless.kernels.lines import SAMPLES
+from kinesphere.markerless.rim import Parts, Rim, around
+
+SIDE = 16
+"""Bins along each of lightness, a and b."""
+_AB = 64.0  # a and b beyond this share the last bin: nothing in a room is more colourful
+_MARGIN = 20
+"""px around the model in which a person is looked for."""
+_NOTHING = np.zeros((2, 2, 3), dtype=np.uint8)
+
+
+@cache
+def lab_bins() -> NDArray[np.uint16]:
+    """Return the histogram bin of five bits each of red, green and blue, (32768,)."""
+    steps = (np.arange(32) * 8 + 4).astype(np.uint8)
+    colours = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1)
+    lab = cv2.cvtColor(colours.reshape(1, -1, 3).astype(np.float32) / 255, cv2.COLOR_RGB2LAB)[0]
+    lightness = np.clip(lab[:, 0] / 100 * SIDE, 0, SIDE - 1).astype(int)
+    ab = np.clip((lab[:, 1:] + _AB) / (2 * _AB) * SIDE, 0, SIDE - 1).astype(int)
+    return np.asarray((lightness * SIDE + ab[:, 0]) * SIDE + ab[:, 1], dtype=np.uint16)
+
+
+class Colours:
+    """Colours of limbs and of the background beside them, learnt from the poses found."""
+
+    def __init__(
+        self, groups: NDArray[np.int32], near_limbs: NDArray[np.bool_], local: float
+    ) -> None:
+        n = int(groups.max()) + 1
+        self._groups, self._near_limbs, self._local = groups, near_limbs, local
+        self._counts = [
+            np.zeros((n, SIDE**3), dtype=np.float32),
+            np.zeros((n, SIDE**3), dtype=np.float32),
+            np.zeros((1, SIDE**3), dtype=np.float32),
+        ]
+        self._densities = [np.zeros_like(counts) for counts in self._counts]
+        self._levels = Levels(_NOTHING)
+        self._seeing = False
+
+    @property
+    def seeing(self) -> bool:
+        """Whether there is an image at this instant."""
+        return self._seeing
+
+    def look(self, picture: NDArray[np.uint8] | None) -> None:
+        """Take in a new image, or that there is none."""
+        self._seeing = picture is not None
+        self._levels = Levels(_NOTHING if picture is None else picture)
+
+    def samples(self, rim: Rim, use: NDArray[np.int8], scale: int) -> Array:
+        """Return how likely samples across the rim are the person's."""
+        limbs, near, far = self._densities
+        out = np.empty((len(use), SAMPLES))
+        colour_samples_kernel(
+            rim.pixels,
+            rim.normals,
+            rim.parts,
+            use,
+            self._levels[scale],
+            float(scale),
+            float(scale),
+            lab_bins(),
+            self._groups,
+            limbs,
+            near,
+            far[0],
+            self._local,
+            out,
+        )
+        return out
+
+    def learn(self, rim: Rim, parts: Parts, rate: float) -> None:
+        """Mix the colours of the present pose into those known."""
+        fresh = [np.zeros_like(counts) for counts in self._counts]
+        image, bins = self._levels[1], lab_bins()
+        count_lines_kernel(
+            rim.pixels,
+            rim.normals,
+            rim.parts,
+            parts.limbs,
+            self._near_limbs,
+            image,
+            bins,
+            self._groups,
+            2,
+            14,
+            20,
+            fresh[0],
+            fresh[1],
+        )
+        count_far_kernel(parts.limbs, image, bins, 4, fresh[2][0])
+        for known, new, density in zip(self._counts, fresh, self._densities, strict=True):
+            total = new.sum(axis=1, keepdims=True)
+            seen = total[:, 0] > 0
+            empty = seen & (known.sum(axis=1) == 0)
+            share = np.where(empty, 1.0, rate * seen)[:, None].astype(np.float32)
+            known *= 1 - share
+            known += share * new / np.maximum(total, 1)
+            for row, out in zip(known, density, strict=True):
+                blurred_kernel(row, SIDE, out)
+
+    def score(self, parts: Parts, scores: Array, counts: Array) -> None:
+        """Add how much a pose explains."""
+        limbs, _, far = self._densities
+        region_score_kernel(
+            parts.limbs,
+            self._levels[1],
+            lab_bins(),
+            self._groups,
+            limbs,
+            far[0],
+            STRIDE,
+            MOST,
+            scores,
+            counts,
+        )
+
+    def person(self, model: Mask) -> tuple[Mask, Mask]:
+        """Return, on a grid of pixels around the model, what it covers and where a person is.
+
+        By the colours of all limbs together against those of the background; smoothed, as single
+        pixels err. In clutter that is a rough guess.
+        """
+        box = around(model, _MARGIN)
+        if box is None:
+            return model, np.zeros_like(model)
+        rows, cols = box
+        grid = (slice(rows.start, rows.stop, STRIDE), slice(cols.start, cols.stop, STRIDE))
+        colours = self._levels[1][grid].astype(np.intp) >> 3
+        bins = lab_bins()[(colours[..., 0] << 10) + (colours[..., 1] << 5) + colours[..., 2]]
+        limbs, near, far = self._densities
+        counts, beside = (c.sum(axis=1, keepdims=True) > 0 for c in self._counts[:2])
+        person = (limbs * counts).sum(axis=0) / max(1, counts.sum())
+        ground = 0.5 * (near * beside).sum(axis=0) / max(1, beside.sum()) + 0.5 * far[0]
+        ratio = np.log((person + FLOOR) / (ground + FLOOR)).astype(np.float32)
+        return model[grid], np.asarray(cv2.blur(ratio[bins], (3, 3)) > 0)

@@ -1,0 +1,213 @@
+"""Poses from contours: votes for limbs, lines of sight, eq. (12) of Rosenhahn et al. 2006."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array
+from kinesphere.geometry.twists import incidence
+from kinesphere.markerless.fit import Eye, Fitter
+from kinesphere.markerless.kernels.contour import NOWHERE
+from kinesphere.markerless.kernels.levelset import contour_kernel
+from kinesphere.markerless.kernels.votes import vote_kernel
+from kinesphere.markerless.levelset import Silhouette, cropped, from_mask, segment
+from kinesphere.markerless.pose import Pose, Posed, posed
+from kinesphere.markerless.rim import Rim, around, derivatives, image_directions
+from kinesphere.markerless.solver import Normals, Prior, solve_step
+from kinesphere.markerless.views import View
+
+AGREE = 0.5
+"""Least cosine between the normals of contour and rim."""
+REJECT = 3.0
+"""Matches farther apart than so many times the median are left out."""
+_DAMPING = 1e-3
+_DRAWN = 3
+"""Steps for which one drawing of what hides what must do."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contour:
+    """The person's outline in one view."""
+
+    points: Array
+    """(n, 2) px."""
+    normals: Array
+    """(n, 2) outward."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContourFitter:
+    """Fits a pose to the contours that level sets, or given masks, find."""
+
+    fitter: Fitter
+    masks: bool
+    pictures: list[NDArray[np.uint8] | None] = field(default_factory=list)
+    silhouettes: list[Silhouette | None] = field(default_factory=list)
+    """As last found."""
+
+    def look(self, pictures: list[NDArray[np.uint8] | None]) -> None:
+        """Take in new images of the views."""
+        self.pictures[:] = pictures
+
+    def fit(self, pose: Pose, priors: tuple[Prior, ...]) -> Pose:
+        """Return the pose that fits best near a given one.
+
+        The coupled method goes to and fro between contour and pose (equation 3).
+        """
+        s = self.fitter.settings
+        coupled = s.method == "coupled" and not self.masks
+        rounds = s.alternations if coupled else 1
+        self.silhouettes[:] = [None] * len(self.pictures)
+        for i in range(rounds):
+            contours = self._contours(pose, s.shape if coupled else 0.0)
+            iterations = max(1, s.contour_iterations // rounds)
+            for k in range(iterations):
+                radius = s.radius / (1 + i * iterations + k) ** 0.5
+                pose, step = self._step(pose, contours, priors, radius, draw=k % _DRAWN == 0)
+                if step < 1e-4:
+                    break
+        return pose
+
+    def _contours(self, pose: Pose, shape: float) -> list[Contour | None]:
+        contours: list[Contour | None] = []
+        points = self.fitter.body.skinned(posed(self.fitter.body.chain, pose))
+        for i, (eye, picture) in enumerate(zip(self.fitter.eyes, self.pictures, strict=True)):
+            model = eye.canvas.draw(points).limbs != NOWHERE
+            if picture is None:
+                found = None
+            elif self.masks:
+                box = around(picture > 127, 4)
+                found = None if box is None else cropped(from_mask(picture), box)
+            else:
+                found = segment(picture, model, self.fitter.settings, self.silhouettes[i], shape)
+            self.silhouettes[i] = found
+            contours.append(None if found is None else _contour(found, eye.canvas.view, 3))
+        return contours
+
+    def _step(
+        self,
+        pose: Pose,
+        contours: list[Contour | None],
+        priors: tuple[Prior, ...],
+        radius: float,
+        draw: bool,
+    ) -> tuple[Pose, float]:
+        body, s = self.fitter.body, self.fitter.settings
+        at = posed(body.chain, pose)
+        points = body.skinned(at)
+        normals = body.normals(points)
+        equations = Normals.empty(body.chain.n_dofs)
+        for eye, contour in zip(self.fitter.eyes, contours, strict=True):
+            if contour is None or len(contour.points) == 0:
+                continue
+            parts = eye.canvas.draw(points) if draw else eye.canvas.drawn
+            rim = eye.canvas.rim(points, normals, parts)
+            which, targets, outward = matches(contour, rim, radius)
+            if len(which) == 0:
+                continue
+            rim = Rim(*(array[which] for array in vars(rim).values()))
+            add = _add_plucker if s.equations == "plucker" else _add_image
+            add(self.fitter, eye, at, rim, targets, outward, equations)
+        return solve_step(body.chain, pose, equations, priors, _DAMPING)
+
+
+def matches(contour: Contour, rim: Rim, radius: float) -> tuple[NDArray[np.intp], Array, Array]:
+    """Match a contour to the outer rim both ways.
+
+    Inward, each contour point goes to the rim point of the limb it is voted to; outward, each rim
+    point to its nearest contour point.
+
+    Returns
+    -------
+    which, targets, normals : (n,), (n, 2), (n, 2)
+        Rim points, and the contour points and normals they belong to.
+    """
+    outer = np.flatnonzero(rim.parts[:, 1] == NOWHERE)
+    pixels, normals = rim.pixels[outer], rim.normals[outer]
+    limbs = np.ascontiguousarray(rim.parts[outer, 0])
+    inward, far_in = _voted(contour.points, contour.normals, pixels, normals, limbs, radius)
+    one = np.zeros(len(contour.points), dtype=np.int32)
+    outward, far_out = _voted(pixels, normals, contour.points, contour.normals, one, radius)
+    i, o = np.flatnonzero(inward >= 0), np.flatnonzero(outward >= 0)
+    which = np.concatenate([outer[inward[i]], outer[o]])
+    target = np.concatenate([i, outward[o]])
+    far = np.concatenate([far_in[i], far_out[o]])
+    if len(far):
+        kept = far <= max(REJECT * float(np.median(far)), 2.0)
+        which, target = which[kept], target[kept]
+    return which, contour.points[target], contour.normals[target]
+
+
+def _voted(
+    points: Array,
+    normals: Array,
+    rim_pixels: Array,
+    rim_normals: Array,
+    limbs: NDArray[np.int32],
+    radius: float,
+) -> tuple[NDArray[np.int32], Array]:
+    match, far = np.full(len(points), -1, dtype=np.int32), np.full(len(points), np.nan)
+    if len(limbs):
+        vote_kernel(points, normals, rim_pixels, rim_normals, limbs, radius, AGREE, match, far)
+    return match, far
+
+
+def _contour(silhouette: Silhouette, view: View, spacing: int) -> Contour:
+    h, w = silhouette.phi.shape
+    taken = np.zeros((h // spacing + 1, w // spacing + 1), dtype=bool)
+    points, normals = np.empty((taken.size, 2)), np.empty((taken.size, 2))
+    n = contour_kernel(silhouette.phi, spacing, points, normals, taken)
+    points = points[:n] + np.array([silhouette.left, silhouette.top])
+    # where the person leaves the image the silhouette ends, but not the person
+    inside = ((points > 4) & (points < [view.width - 5, view.height - 5])).all(axis=1)
+    return Contour(points[inside], normals[:n][inside])
+
+
+def _add_image(
+    fitter: Fitter,
+    eye: Eye,
+    at: Posed,
+    rim: Rim,
+    targets: Array,
+    outward: Array,
+    equations: Normals,
+) -> None:
+    """Add how far rim points are from the contour across it, in px."""
+    view = eye.canvas.view
+    points, _ = derivatives(fitter.body, at, rim.pairs, rim.shares, np.zeros((len(targets), 0, 3)))
+    directions = image_directions(view, points, outward)[:, None]
+    _, rows = derivatives(fitter.body, at, rim.pairs, rim.shares, directions)
+    residual = ((targets - rim.pixels) * outward).sum(axis=1)
+    weight = fitter.settings.data_weight / (1 + (residual / 6.0) ** 2)
+    equations.add(rows[:, 0], residual, weight)
+
+
+def _add_plucker(
+    fitter: Fitter,
+    eye: Eye,
+    at: Posed,
+    rim: Rim,
+    targets: Array,
+    _: Array,
+    equations: Normals,
+) -> None:
+    """Add X × n − m = 0, three equations of rank two a match (equation 12), in px at its depth."""
+    view = eye.canvas.view
+    fx, fy, cx, cy = view.lens
+    plane = np.column_stack(
+        [(targets[:, 0] - cx) / fx, (targets[:, 1] - cy) / fy, np.ones(len(targets))]
+    )
+    n = plane @ view.rotation
+    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    moment = np.cross(view.centre, n)
+    # the derivative of X × n along e is e · (dX × n) = dX · (n × e)
+    directions = np.cross(n[:, None], np.eye(3)[None])
+    points, rows = derivatives(fitter.body, at, rim.pairs, rim.shares, directions)
+    error = -incidence(points, n, moment)
+    depth = points @ view.rotation[2] + view.shift[2]
+    scale = fx / depth  # px a metre, so that cameras near and far count alike
+    far = np.linalg.norm(error, axis=1) * scale
+    weight = fitter.settings.data_weight * scale**2 / (1 + (far / 6.0) ** 2)
+    n_dofs = rows.shape[2]
+    equations.add(rows.reshape(-1, n_dofs), error.ravel(), np.repeat(weight, 3))

@@ -1,0 +1,1 @@
+"""Kernels of the markerless tracker: arrays in, arrays out."""

@@ -1,0 +1,195 @@
+"""What a camera would see of a posed body: parts of the image, and the visible rim."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array
+from kinesphere.kernels.raster import visible_faces_kernel
+from kinesphere.markerless.body import Body
+from kinesphere.markerless.kernels.contour import (
+    NOWHERE,
+    parts_kernel,
+    project_kernel,
+    rim_kernel,
+)
+from kinesphere.markerless.kernels.jacobian import jacobian_kernel
+from kinesphere.markerless.pose import Posed
+from kinesphere.markerless.views import View
+
+BEHIND = 0.03
+"""m; what is seen beside a rim must be this much farther away, or the rim is a fold."""
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """Which limb each pixel of a view shows."""
+
+    limbs: NDArray[np.int32]
+    """(height, width) limb of the chain, NOWHERE for none."""
+    nearness: NDArray[np.float32]
+    """(height, width) 1/depth in 1/m, 0 where no limb is."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rim:
+    """Visible rim points of a body in a view."""
+
+    pairs: NDArray[np.int32]
+    """(n, 2) the vertices each point lies between."""
+    shares: Array
+    """(n,) how far it is from the first to the second."""
+    pixels: Array
+    """(n, 2) px."""
+    normals: Array
+    """(n, 2) outward unit normals in the image."""
+    parts: NDArray[np.int32]
+    """(n, 2) limb inside; limb seen outside, NOWHERE for the background."""
+
+
+class Canvas:
+    """Buffers of one view, used again for every frame."""
+
+    def __init__(self, view: View, body: Body, cell: int) -> None:
+        self.view, self.body, self.cell = view, body, cell
+        h, w = view.height, view.width
+        self._nearness = np.zeros((h, w), dtype=np.float32)
+        self._faces = np.full((h, w), NOWHERE, dtype=np.int32)
+        self._parts = np.full((h, w), NOWHERE, dtype=np.int32)
+        self._rows = (0, h)
+        self._taken = np.zeros((h // cell + 1, w // cell + 1), dtype=bool)
+        most = self._taken.size
+        self._rim = (
+            np.empty(most, dtype=np.int32),
+            np.empty(most),
+            np.empty((most, 2)),
+            np.empty((most, 2)),
+            np.empty((most, 2), dtype=np.int32),
+        )
+        self._pixels, self._depths = np.empty((len(body.bind), 2)), np.empty(len(body.bind))
+
+    @property
+    def drawn(self) -> Parts:
+        """What was drawn last."""
+        return Parts(self._parts, self._nearness)
+
+    def draw(self, points: Array) -> Parts:
+        """Draw the surface, (n_vertices, 3) m in the world; the buffers are this canvas' own."""
+        view, h = self.view, self.view.height
+        top, bottom = self._rows
+        self._nearness[top:bottom] = 0.0
+        self._faces[top:bottom] = NOWHERE
+        self._parts[top:bottom] = NOWHERE
+        project_kernel(points, view.rotation, view.shift, view.lens, self._pixels, self._depths)
+        rows = self._pixels[:, 1]
+        rows = rows[np.isfinite(rows)]
+        if len(rows) == 0:
+            self._rows = (0, 0)
+            return self.drawn
+        top, bottom = (int(np.clip(r, 0, h)) for r in (rows.min() - 1, rows.max() + 2))
+        self._rows = (top, bottom)
+        visible_faces_kernel(
+            self._pixels, self._depths, self.body.faces, True, self._nearness, self._faces
+        )
+        parts_kernel(self._faces, self.body.part_of_face, top, bottom, self._parts)
+        return self.drawn
+
+    def rim(self, points: Array, normals: Array, parts: Parts) -> Rim:
+        """Return the visible rim of a posed surface, by what ``draw`` showed."""
+        view, body = self.view, self.body
+        edges, shares, pixels, directions, limbs = self._rim
+        n = rim_kernel(
+            points,
+            normals,
+            body.edges,
+            view.centre,
+            view.rotation,
+            view.shift,
+            view.lens,
+            parts.limbs,
+            parts.nearness,
+            body.limb_of_vertex,
+            self.cell,
+            BEHIND,
+            self._taken,
+            edges,
+            shares,
+            pixels,
+            directions,
+            limbs,
+        )
+        return Rim(
+            body.edges[edges[:n]],
+            shares[:n].copy(),
+            pixels[:n].copy(),
+            directions[:n].copy(),
+            limbs[:n].copy(),
+        )
+
+
+def derivatives(
+    body: Body, at: Posed, pairs: NDArray[np.int32], shares: Array, directions: Array
+) -> tuple[Array, Array]:
+    """Return surface points in the world and how they move along directions.
+
+    Parameters
+    ----------
+    pairs, shares : (n, 2), (n,)
+        As in `Rim`.
+    directions : (n, n_rows, 3)
+
+    Returns
+    -------
+    points, rows : (n, 3) m, (n, n_rows, n_dofs)
+    """
+    chain = body.chain
+    points = np.empty((len(pairs), 3))
+    rows = np.empty((len(pairs), directions.shape[1], chain.n_dofs))
+    jacobian_kernel(
+        body.bind,
+        body.influences,
+        body.weights,
+        pairs,
+        shares,
+        chain.centres,
+        at.rotations,
+        at.centres,
+        at.axes,
+        chain.dof_limbs,
+        chain.dof_kinds,
+        chain.moves,
+        directions,
+        points,
+        rows,
+    )
+    return points, rows
+
+
+def image_directions(view: View, points: Array, normals: Array) -> Array:
+    """Return the world direction whose component moves a pixel along a normal, (n, 3) px/m.
+
+    Parameters
+    ----------
+    points : (n, 3) m
+    normals : (n, 2)
+        Unit vectors in the image.
+    """
+    seen = points @ view.rotation.T + view.shift
+    fx, fy = view.lens[:2]
+    x, y = normals[:, 0] * fx, normals[:, 1] * fy
+    depth = seen[:, 2]
+    in_camera = np.stack([x, y, -(x * seen[:, 0] + y * seen[:, 1]) / depth], axis=1)
+    return np.asarray((in_camera / depth[:, None]) @ view.rotation)
+
+
+def around(mask: NDArray[np.bool_], margin: int) -> tuple[slice, slice] | None:
+    """Return rows and columns that hold a mask and a margin; None for an empty mask."""
+    rows, cols = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    if len(rows) == 0:
+        return None
+    h, w = mask.shape
+    return (
+        slice(max(0, rows[0] - margin), min(h, rows[-1] + margin + 1)),
+        slice(max(0, cols[0] - margin), min(w, cols[-1] + margin + 1)),
+    )

@@ -1,0 +1,78 @@
+"""What tracking found: poses, joint centres, and how far to trust each limb in each frame."""
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array, History, Mask
+
+
+class PosedBody(Protocol):
+    """A body model as drawing and reports need it."""
+
+    @property
+    def faces(self) -> NDArray[np.int32]:
+        """(n_faces, 3) vertex indices, counter-clockwise seen from outside."""
+        ...
+
+    @property
+    def limb_of_face(self) -> NDArray[np.int32]:
+        """(n_faces,) which limb of ``TrackedMotion.limb_names`` a face belongs to."""
+        ...
+
+    def vertices(self, parameters: Array) -> Array:
+        """Return the skinned surface in the world, (n_parameters,) → (n_vertices, 3) m."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class TrackedMotion:
+    """Poses of a body model over the frames of a scene; NaN in frames without a pose."""
+
+    body: PosedBody
+    """As fitted to the person."""
+    parameter_names: tuple[str, ...]
+    parameters: Array
+    """(n_frames, n_parameters), m and rad."""
+    limb_names: tuple[str, ...]
+    """Names of the house's limbs, root first, parents before children."""
+    limb_parents: tuple[int, ...]
+    """Index of each limb's parent; −1 for the root."""
+    joint_names: tuple[str, ...]
+    """``joint_names[i]`` joins ``limb_names[i + 1]`` to its parent."""
+    rotations: Array
+    """(n_frames, n_limbs, 3, 3) ``world_from_limb``."""
+    origins: Array
+    """(n_frames, n_limbs, 3) m: the joint towards the parent, of the root its own origin."""
+    ends: Array
+    """(n_limbs, 3) m in the limb frame: the far end (next joint, finger tips, toes, crown)."""
+    overlap: Array
+    """(n_frames, n_cameras) intersection over union of model and person; NaN without image."""
+    support: Array
+    """(n_frames, n_limbs) 0–1: share of the limb's visible evidence that speaks for its pose; NaN
+    where no camera shows enough of the limb to tell."""
+    lost: Mask
+    """(n_frames, n_limbs) True where a limb is held lost: overlap alone does not notice."""
+    rate: float
+    """Hz."""
+    seconds: dict[str, float] = field(default_factory=dict)
+    """Module (decoding, segmentation, rasterizing, …) → time spent."""
+    history: History = ()
+
+    @property
+    def n_frames(self) -> int:
+        """Number of frames."""
+        return len(self.parameters)
+
+    @property
+    def joint_centres(self) -> Array:
+        """(n_frames, n_joints, 3) m in the world: where each limb but the root begins."""
+        return self.origins[:, 1:]
+
+    @property
+    def solved(self) -> Mask:
+        """(n_frames,) True where the frame has a pose."""
+        solved: Mask = np.asarray(np.isfinite(self.parameters).all(axis=1))
+        return solved

@@ -1,0 +1,106 @@
+"""From frame to frame: predict, fit, judge each limb, bring lost ones back, learn the colours."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array, Mask
+from kinesphere.markerless.contour_fit import ContourFitter
+from kinesphere.markerless.fit import Fitter
+from kinesphere.markerless.pose import Pose
+from kinesphere.markerless.prediction import expectation, predicted, rest
+from kinesphere.markerless.recovery import Watch, held_lost, recovered
+
+_LINES = 3
+"""Lines along a limb's rim, over all cameras, from which it can be judged."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What one instant gave."""
+
+    pose: Pose
+    support: Array
+    """(n_limbs,) 0–1, of the chain's limbs: share of the evidence along the limb's rim that
+    speaks for it; NaN where no rim of it is seen."""
+    gain: Array
+    """(n_limbs,) nats a pixel by which what the limb covers is likelier it than background."""
+    lost: Mask
+    """(n_limbs,) held lost."""
+
+
+@dataclass(eq=False)
+class Tracking:
+    """A tracker at work; fed one instant after the other."""
+
+    fitter: Fitter
+    last: Pose
+    before: Pose | None = None
+    contours: ContourFitter | None = None
+    """Finds the poses in place of the fitter, for the methods that go by contours."""
+    watch: Watch = field(default_factory=Watch)
+
+    def begin(self, pictures: Sequence[NDArray[np.uint8] | None]) -> Found:
+        """Learn from images, one an eye, (h, w, 3) or masks, that show about the present pose."""
+        self._look(pictures)
+        chain, settings = self.fitter.body.chain, self.fitter.settings
+        if self.fitter.open_eyes:
+            self._judged(self.last, learn=1.0)
+            priors = (expectation(chain, self.last, settings), rest(chain, settings, self.last))
+            self.last = self.fitter.fit(self.last, priors)
+        return self._judged(self.last, learn=1.0)
+
+    def step(self, pictures: Sequence[NDArray[np.uint8] | None]) -> Found:
+        """Find the pose in the next images."""
+        self._look(pictures)
+        chain, settings = self.fitter.body.chain, self.fitter.settings
+        guess = predicted(chain, self.before, self.last, settings.velocity)
+        if not self.fitter.open_eyes:
+            # nothing to go by: the last pose stays, and its speed is forgotten
+            self.before = None
+            return self._judged(self.last)
+        priors = (expectation(chain, guess, settings), rest(chain, settings, guess))
+        pose = (self.contours or self.fitter).fit(guess, priors)
+        self.before, self.last = self.last, pose
+        found = self._judged(pose, learn=settings.learning)
+        missed = found.lost | np.isnan(found.gain)  # nobody sees it: it may be elsewhere
+        if settings.recover and (names := self.watch.due(chain, missed)):
+            better = recovered(self.fitter, pose, names)
+            if better is not None:
+                self.before, self.last = None, better  # it did not move there: it was there
+                found = self._judged(better)
+        return found
+
+    def _look(self, pictures: Sequence[NDArray[np.uint8] | None]) -> None:
+        eyes = self.fitter.eyes
+        views = [
+            None if p is None else e.canvas.view.image(p)
+            for e, p in zip(eyes, pictures, strict=True)
+        ]
+        for eye, picture in zip(eyes, views, strict=True):
+            eye.evidence.look(picture)
+        if self.contours is not None:
+            self.contours.look(views)
+
+    def _judged(self, pose: Pose, learn: float = 0.0) -> Found:
+        """Judge a pose, and take it as true as far as ``learn`` goes."""
+        n = len(self.fitter.body.chain.links)
+        told_for, told = np.zeros(n), np.zeros(n)
+        scores, counts = np.zeros(n), np.zeros(n)
+        for eye, (parts, rim) in zip(self.fitter.open_eyes, self.fitter.look_at(pose), strict=True):
+            if learn >= 1:
+                eye.evidence.learn(rim, parts, learn)
+            eye.evidence.score(parts, scores, counts)
+            if len(rim.shares):
+                agreement = self.fitter.edges(eye, rim, parts, 2)[2]
+                known = np.isfinite(agreement)
+                np.add.at(told_for, rim.parts[known, 0], agreement[known])
+                np.add.at(told, rim.parts[known, 0], 1)
+            if 0 < learn < 1:
+                eye.evidence.learn(rim, parts, learn)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            support = np.where(told >= _LINES, told_for / told, np.nan)
+            gain = np.where(counts >= _LINES, scores / counts, np.nan)
+        return Found(pose, support, gain, held_lost(support, gain, self.fitter.settings))

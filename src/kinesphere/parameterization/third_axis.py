@@ -1,0 +1,130 @@
+"""Whether a joint has a third axis: one its limb turns about without going anywhere."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from kinesphere.data import Json
+from kinesphere.parameterization.anatomy import N_AXES, body_axes, joint_kind
+from kinesphere.parameterization.axes.registry import BY_ORIENTATION
+from kinesphere.parameterization.axes.twist_phases import TwistAxis, find_twist_axis
+from kinesphere.parameterization.confidence import observed_n_axes
+from kinesphere.parameterization.joint import (
+    JointFit,
+    angles_between,
+    asked_n_axes,
+    first_excursion_positive,
+    fit_joint,
+)
+from kinesphere.parameterization.second_axis import second_axis
+from kinesphere.parameterization.settings import ParameterizationSettings
+from kinesphere.parameterization.view import JointView, view_joint
+
+TOLD = 0.9  # of the frames must tell the twist
+PER_AXIS = ("ranges_deg", "conditioning", "halves_disagreement_deg")
+
+
+def fit_axes(view: JointView, settings: ParameterizationSettings) -> JointFit:
+    """Find all axes of one joint, and its rest orientation.
+
+    One or two move the limb (`fit_joint`). Where it also turns about itself on purpose
+    (`find_twist_axis`), the axis of that, fixed in the child, is axis 1 of three, the most distal
+    one; no twist is left over, and the twist phases have no say about the other two. A
+    hinge that does so gets an axis across both, as the elbow of ISB has between flexion and
+    pronation (Wu et al. 2005, doi:10.1016/j.jbiomech.2004.05.042). Where the user says how many
+    axes a joint has, it has those.
+
+    Parameters
+    ----------
+    view
+        The joint.
+    settings
+        Methods and limits.
+    """
+    asked = asked_n_axes(view.name, settings.axes)
+    if asked in (None, 3) and settings.axes.method in BY_ORIENTATION:
+        told = view.twist_known[view.calibration]
+        enough = len(told) > 0 and told.mean() >= TOLD
+        if enough and (twist := find_twist_axis(view.samples, settings)) is not None:
+            calm = _without(view, twist, settings)
+            kind = joint_kind(view.name)
+            swings = N_AXES[kind] if kind else observed_n_axes(calm.samples)
+            fit = fit_joint(calm, settings, swings)
+            if fit.source == "movement" and not fit.doubts:
+                joined = _joined(view, fit, twist, settings)
+                if joined is not None:
+                    return joined
+    return fit_joint(view, settings)
+
+
+def _without(view: JointView, twist: TwistAxis, settings: ParameterizationSettings) -> JointView:
+    """Return the joint without the frames of its twist phases among those that count."""
+    frames = np.flatnonzero(view.calibration)
+    calibration = view.calibration.copy()
+    for a, b in twist.phases:
+        calibration[frames[a:b]] = False
+    return view_joint(
+        view.name,
+        view.rotations,
+        view.long_axis,
+        view.twist_known,
+        view.samples.rate,
+        calibration,
+        settings,
+        view.human,
+    )
+
+
+def _joined(
+    view: JointView, fit: JointFit, twist: TwistAxis, settings: ParameterizationSettings
+) -> JointFit | None:
+    """Return the joint with its twist axis as axis 1; None where two axes would be one."""
+    body = body_axes(view.name)
+    about = fit.rest @ twist.axis
+    if body is not None and about @ body[2] < 0:
+        about = -about
+    swings, uncertainty = fit.axes, fit.uncertainty
+    between = 3 - 1 - len(swings)
+    if between:
+        side = np.cross(swings[0], about) if body is None else body[1]
+        swings = np.array([second_axis(swings[0], about, side), swings[0]])
+        uncertainty = np.array([np.nan, uncertainty[0]])
+    axes = np.array([about, *swings])
+    closest = max(abs(float(a @ b)) for a, b in combinations(axes, 2))
+    if closest > np.cos(np.deg2rad(settings.axes.smallest_angle)):
+        return None
+    if body is None:
+        axes = first_excursion_positive(view, axes, fit.rest, settings)
+    uncertainty = np.array([twist.uncertainty, *uncertainty])
+    halves = float(np.rad2deg(twist.halves))
+    own = (float(np.rad2deg(twist.range)), twist.conditioning, halves)
+    observed = fit.findings["n_axes_by_data"]
+    spans: list[Json] = [list(t) for t in view.samples.with_phases(twist.phases).phase_times]
+    swung = _listed(fit.findings.get("phases_s"))
+    findings: Mapping[str, Json] = {
+        **fit.findings,
+        "n_axes": 3,
+        "n_axes_by_data": observed + 1 if isinstance(observed, int) else None,
+        "axes_uncertainty_deg": [float(u) if u == u else None for u in np.rad2deg(uncertainty)],
+        "axes_apart_deg": angles_between(axes),
+        "phases_s": sorted([*swung, *spans], key=_start),
+        "twist_phases_s": spans,
+        "twist_axis_off_limb_deg": float(
+            np.rad2deg(np.arccos(min(1.0, float(twist.axis @ view.long_axis))))
+        ),
+        **{
+            name: [value, *[None] * between, *_listed(fit.findings.get(name))]
+            for name, value in zip(PER_AXIS, own, strict=True)
+        },
+    }
+    return replace(fit, axes=axes, uncertainty=uncertainty, findings=findings)
+
+
+def _listed(value: Json) -> list[Json]:
+    return value if isinstance(value, list) else []
+
+
+def _start(span: Json) -> float:
+    return float(span[0]) if isinstance(span, list) and isinstance(span[0], float) else 0.0

@@ -1,0 +1,78 @@
+"""Axes from other recordings of the same person: per joint from where they are known best."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+
+from kinesphere.data import Joint, Skeleton, Solution
+
+Source: TypeAlias = Solution | Skeleton
+"""Another recording of the same person, solved."""
+
+
+def skeletons_of(sources: Source | Sequence[Source] | None) -> tuple[Skeleton, ...]:
+    """Return the skeletons of one solution or several, in their order."""
+    if sources is None:
+        return ()
+    several = (sources,) if isinstance(sources, Solution | Skeleton) else sources
+    return tuple(s.skeleton if isinstance(s, Solution) else s for s in several)
+
+
+def with_best_axes(
+    skeleton: Skeleton, sources: Sequence[Skeleton]
+) -> tuple[Skeleton, dict[str, int]]:
+    """Return a skeleton whose joints bear the axes that some other knows best.
+
+    Laboratories record a functional trial for each joint: a hip's axes are measured in one, a
+    knee's in another. Of the solutions that measured a joint's axes (none of which is the body
+    frame's), the one with the smallest largest uncertainty serves; the first of equal ones.
+
+    Parameters
+    ----------
+    skeleton
+        Of the motion to be solved.
+    sources
+        Parameterized skeletons of the same person.
+
+    Returns
+    -------
+    skeleton
+        Joints that nobody measured have no axes.
+    chosen
+        Joint → index in ``sources``.
+    """
+    joints, chosen = [], {}
+    for joint in skeleton.joints:
+        others = {
+            i: source.joint(joint.name)
+            for i, source in enumerate(sources)
+            if joint.name in source.joint_names and _measured(source.joint(joint.name))
+        }
+        nothing = replace(joint, axes=None, rest=None, axes_source=None, axes_uncertainty=None)
+        if others:
+            best = min(others, key=lambda i: _uncertainty(others[i]))
+            other = others[best]
+            chosen[joint.name] = best
+            nothing = replace(
+                nothing,
+                axes=other.axes,
+                rest=other.rest,
+                axes_source=other.axes_source,
+                axes_uncertainty=other.axes_uncertainty,
+            )
+        joints.append(nothing)
+    return replace(skeleton, joints=tuple(joints)), chosen
+
+
+def _measured(joint: Joint) -> bool:
+    return joint.axes is not None and joint.rest is not None and joint.axes_source != "body"
+
+
+def _uncertainty(joint: Joint) -> float:
+    """Return the largest that is known, rad; infinite where none is."""
+    told = joint.axes_uncertainty
+    if told is None or not np.isfinite(told).any():
+        return np.inf
+    return float(np.nanmax(told))

@@ -1,0 +1,89 @@
+"""``kinesphere track`` as a person would run it, on a small film with its masks."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("cv2")
+pytest.importorskip("av")
+
+from kinesphere.io import read_solution
+from kinesphere.io.images import read_image
+from kinesphere.io.scene import write_scene
+from kinesphere.synthetic.film import make_film
+
+pytestmark = pytest.mark.slow  # rendering takes long in plain Python
+
+
+@pytest.fixture(scope="module")
+def film():
+    return make_film(1, "arms", n_frames=5, masks=True)
+
+
+@pytest.fixture(scope="module")
+def scene(film, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("film") / "scene"
+    return write_scene(replace(film.scene, name="Small film"), folder, "png")
+
+
+def test_a_scene_becomes_a_solved_folder(call, scene, film, tmp_path):
+    out = tmp_path / "out"
+    shown = call("track", scene, "-o", out, "--json")
+    assert shown.code == 0, shown.err
+    summary = json.loads(shown.out)
+    assert summary["model"] == "markerless"
+    assert summary["tracking"]["n_solved"] == 5
+    assert summary["tracking"]["overlap_mean"] > 0.85
+    assert len(summary["tracking"]["limbs"]) == 15
+    solution = read_solution(out)
+    assert solution.recording.n_markers == 0
+    assert solution.motion.n_frames == 5
+    names = film.motion.surface.limbs
+    centres = solution.motion.joint_centres()
+    for joint, limb in (
+        ("neck", "head"),
+        ("left_elbow", "left_forearm"),
+        ("right_knee", "right_shank"),
+    ):
+        found = centres[:, solution.skeleton.joint_names.index(joint)]
+        true = film.motion.joint_centres[:, names.index(limb)]
+        assert np.linalg.norm(found - true, axis=1).max() < 0.05
+    assert read_image(out / "overlays.jpg").shape[0] > 100
+    assert len((out / "tracking.csv").read_text().splitlines()) == 6
+    page = (out / "report.html").read_text()
+    assert "Small film" in page
+    assert "data:image/jpeg;base64," in page
+
+
+def test_a_scene_that_does_not_fit_is_one_line(call, scene, tmp_path):
+    text = scene.read_text().replace('name = "cam02"', 'name = "cam07"')
+    wrong = scene.parent / "wrong.toml"
+    wrong.write_text(text)
+    shown = call("track", wrong, "-o", tmp_path / "out")
+    assert shown.code == 2
+    assert "cam07 is not calibrated" in shown.err
+    assert len(shown.error_lines) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_other_peoples_files_are_never_replaced(call, scene, tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "thesis.txt").write_text("…")
+    shown = call("track", scene, "-o", tmp_path / "out")
+    assert shown.code == 2
+    assert (tmp_path / "out" / "thesis.txt").read_text() == "…"
+
+
+def test_without_opencv_it_says_how_to_get_it(call, scene, tmp_path, monkeypatch):
+    import sys
+
+    from kinesphere.io import images
+
+    images.opencv.cache_clear()
+    monkeypatch.setitem(sys.modules, "cv2", None)
+    shown = call("track", scene, "-o", tmp_path / "out")
+    images.opencv.cache_clear()
+    assert shown.code == 2
+    assert "pip install 'kinesphere[markerless]'" in shown.err

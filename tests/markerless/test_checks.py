@@ -1,0 +1,150 @@
+"""Cameras that fit agree; one that is turned, swapped or late is found."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+pytest.importorskip("cv2")
+
+from kinesphere.data import Footage
+from kinesphere.markerless.checks import AGREE, check_scene
+from kinesphere.markerless.consistency import disagreement, find_culprit, find_lateness, sights
+from kinesphere.synthetic.film import make_film
+
+pytestmark = pytest.mark.slow  # rendering takes long in plain Python
+
+SIZE = (320, 240)
+DIAGONAL = float(np.hypot(*SIZE))
+
+
+@pytest.fixture(scope="module")
+def film():
+    """Arms swinging before four cameras, masks alone: quick."""
+    made = make_film(3, "arms", size=SIZE, n_frames=24, masks=True)
+    footage = replace(made.footage, with_images=False)
+    return replace(made, scene=replace(made.scene, footage=footage))
+
+
+@pytest.fixture(scope="module")
+def masks(film):
+    return [frame.masks for frame in film.scene.frames()]
+
+
+@dataclass(frozen=True)
+class Late:
+    """Footage of which one camera shows everything some frames late."""
+
+    footage: Footage
+    camera: int
+    frames_late: int
+
+    def frames(self, start, stop, step=1):
+        for i in range(start, stop, step):
+            now = next(iter(self.footage.frames(i, i + 1, 1)))
+            then = max(0, i - self.frames_late)
+            late = next(iter(self.footage.frames(then, then + 1, 1)))
+            mixed = list(now.masks)
+            mixed[self.camera] = late.masks[self.camera]
+            yield replace(now, masks=tuple(mixed))
+
+
+def turned(camera, degrees):
+    turn = Rotation.from_rotvec([0, np.radians(degrees), 0]).as_matrix()
+    return camera.turned(turn, camera.centre - turn @ camera.centre)
+
+
+def test_true_cameras_agree(film, masks):
+    assert disagreement(sights(film.scene.cameras, masks[::6])) < 1.0
+
+
+def test_disagreement_grows_with_the_error(film, masks):
+    cameras = list(film.scene.cameras)
+    apart = []
+    for degrees in (0.0, 1.0, 3.0):
+        cameras[2] = turned(film.scene.cameras[2], degrees)
+        apart.append(disagreement(sights(cameras, masks[::6])))
+    assert apart[0] < apart[1] < apart[2]
+    assert apart[2] > 2 * AGREE * DIAGONAL
+
+
+@pytest.mark.parametrize("wrong", range(4))
+def test_the_camera_that_is_turned_is_found(film, masks, wrong):
+    cameras = list(film.scene.cameras)
+    cameras[wrong] = turned(cameras[wrong], 3.0)
+    assert find_culprit(sights(cameras, masks[::6])) == wrong
+
+
+def test_the_order_of_cameras_does_not_matter(film, masks):
+    order = [2, 0, 3, 1]
+    cameras = list(film.scene.cameras)
+    cameras[1] = turned(cameras[1], 2.0)
+    straight = disagreement(sights(cameras, masks[::6]))
+    shuffled = disagreement(
+        sights([cameras[k] for k in order], [tuple(m[k] for k in order) for m in masks[::6]])
+    )
+    assert shuffled == pytest.approx(straight, abs=0.5)
+
+
+def test_turning_the_world_changes_nothing(film, masks):
+    turn, shift = Rotation.from_rotvec([0.3, -1.0, 0.5]).as_matrix(), np.array([4.0, -2.0, 1.0])
+    cameras = [turned(c, 1.0 * (i == 0)) for i, c in enumerate(film.scene.cameras)]
+    there = disagreement(sights([c.turned(turn, shift) for c in cameras], masks[::6]))
+    assert there == pytest.approx(disagreement(sights(cameras, masks[::6])), abs=0.5)
+
+
+@pytest.mark.parametrize("frames_late", [-3, 3])
+def test_the_camera_that_is_late_is_found(film, masks, frames_late):
+    n = len(masks)
+    mixed = []
+    for t in range(3, n - 3):
+        row = list(masks[t])
+        row[1] = masks[t - frames_late][1]
+        mixed.append(tuple(row))
+    late = find_lateness(sights(film.scene.cameras, mixed), 4)
+    assert (late.camera, late.frames) == (1, frames_late)
+    assert late.mended > 0.6
+
+
+def test_a_scene_in_order_has_nothing_to_say(film):
+    step = check_scene(film.scene)
+    assert step.warnings == ()
+    assert step.findings["checked"] is True
+
+
+def test_a_late_camera_is_named_with_its_remedy(film):
+    late = replace(film.scene, footage=Late(film.scene.footage, 2, 3), offsets=(0, 0, 5, 0))
+    (warning,) = check_scene(late).warnings
+    assert "cam03 seems to show everything 3 frames later" in warning
+    assert "offset = 8" in warning
+
+
+def test_a_wrong_calibration_is_named(film):
+    cameras = list(film.scene.cameras)
+    cameras[0] = turned(cameras[0], 4.0)
+    warnings = check_scene(replace(film.scene, cameras=tuple(cameras))).warnings
+    assert any("cam01 does not fit the others" in warning for warning in warnings)
+
+
+def test_swapped_cameras_are_noticed(film):
+    a, b, c, d = film.scene.cameras
+    warnings = check_scene(replace(film.scene, cameras=(b, a, c, d))).warnings
+    assert any("contradict each other" in warning for warning in warnings)
+
+
+def test_without_masks_or_plates_it_says_that_nothing_was_checked(film):
+    (warning,) = check_scene(replace(film.scene, has_masks=False)).warnings
+    assert "neither masks nor plates" in warning
+
+
+def test_empty_masks_are_said(film):
+    @dataclass(frozen=True)
+    class Blind:
+        def frames(self, start, stop, step=1):
+            for frame in film.scene.footage.frames(start, stop, step):
+                empty = (np.zeros(SIZE[::-1], dtype=bool), *frame.masks[1:])
+                yield replace(frame, masks=empty)
+
+    warnings = check_scene(replace(film.scene, footage=Blind())).warnings
+    assert "cam01 shows no silhouette in any frame looked at" in warnings[0]

@@ -1,0 +1,81 @@
+"""Colour statistics: densities, learning, what pixels are taken for."""
+
+import cv2
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from kinesphere.markerless.colours import SIDE, Colours, lab_bins
+from kinesphere.markerless.eyes import colour_groups
+from kinesphere.markerless.fit import near_limbs
+from kinesphere.markerless.kernels.colour import blurred_kernel
+from kinesphere.markerless.kernels.lines import REACH, SAMPLES
+from kinesphere.markerless.pose import bind_pose, posed
+from kinesphere.markerless.rim import Canvas
+from kinesphere.markerless.views import view_of
+
+
+def test_bins_are_those_of_lab(rng):
+    colours = rng.integers(0, 32, (40, 3))
+    rgb = (colours * 8 + 4).astype(np.float32)[None] / 255
+    lab = cv2.cvtColor(rgb, cv2.COLOR_RGB2LAB)[0]
+    bins = lab_bins()[(colours[:, 0] << 10) + (colours[:, 1] << 5) + colours[:, 2]]
+    lightness, rest = np.divmod(bins, SIDE * SIDE)
+    a, b = np.divmod(rest, SIDE)
+    assert_allclose(lightness, np.clip(lab[:, 0] / 100 * SIDE, 0, SIDE - 1).astype(int))
+    for axis, found in ((1, a), (2, b)):
+        assert_allclose(found, np.clip((lab[:, axis] + 64) / 8, 0, SIDE - 1).astype(int))
+
+
+def test_a_blurred_histogram_is_a_density_about_where_the_counts_were():
+    counts = np.zeros(SIDE**3, dtype=np.float32)
+    counts[(5 * SIDE + 7) * SIDE + 9] = 40
+    out = np.empty_like(counts)
+    blurred_kernel(counts, SIDE, out)
+    cube = out.reshape(SIDE, SIDE, SIDE)
+    assert out.sum() == pytest.approx(1, abs=1e-6)
+    assert cube[5, 7, 9] == pytest.approx(1 / 8)
+    assert cube[4, 7, 9] == pytest.approx(1 / 16)
+    assert cube[4, 6, 10] == pytest.approx(1 / 64)
+    assert_allclose(np.argwhere(cube > 0).mean(axis=0), [5, 7, 9])
+
+
+def test_an_empty_histogram_stays_empty():
+    out = np.ones(SIDE**3, dtype=np.float32)
+    blurred_kernel(np.zeros(SIDE**3, dtype=np.float32), SIDE, out)
+    assert (out == 0).all()
+
+
+def test_left_and_right_share_colours_and_unknown_limbs_do_not():
+    groups = colour_groups(["left_forearm", "right_forearm", "trunk", "tail", "left_clavicle"])
+    assert groups[0] == groups[1]
+    assert groups[2] == groups[4]
+    assert len({groups[0], groups[2], groups[3]}) == 3
+
+
+@pytest.mark.slow
+def test_what_was_learnt_is_recognised(whole, ring):
+    canvas = Canvas(view_of(ring(2)[0], 640), whole, 6)
+    points = whole.skinned(posed(whole.chain, bind_pose(whole.chain)))
+    normals = whole.normals(points)
+    parts = canvas.draw(points)
+    rim = canvas.rim(points, normals, parts)
+    image = np.full((*parts.limbs.shape, 3), (60, 90, 60), dtype=np.uint8)
+    image[parts.limbs >= 0] = (180, 120, 100)
+    colours = Colours(colour_groups(whole.chain.limb_names), near_limbs(whole), 0.7)
+    assert not colours.seeing
+    colours.look(image)
+    assert colours.seeing
+    use = np.ones((len(rim.shares), SAMPLES), dtype=np.int8)
+    before = colours.samples(rim, use, 1)
+    assert_allclose(before, 0.5)  # nothing learnt yet, nothing told
+    colours.learn(rim, parts, 1.0)
+    after = colours.samples(rim, use, 1)
+    outer = rim.parts[:, 1] < 0
+    assert np.median(after[outer, : REACH - 1]) > 0.95
+    assert np.median(after[outer, REACH + 2 :]) < 0.05
+    scores, counts = np.zeros(len(whole.chain.links)), np.zeros(len(whole.chain.links))
+    colours.score(parts, scores, counts)
+    assert scores.sum() / counts.sum() > 2
+    model, person = colours.person(parts.limbs >= 0)
+    assert (model & person).sum() / (model | person).sum() > 0.95

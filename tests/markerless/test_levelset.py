@@ -1,0 +1,120 @@
+"""Level sets on pictures whose regions are known."""
+
+import cv2
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from kinesphere.markerless.kernels.levelset import contour_kernel, evolve_kernel
+from kinesphere.markerless.kernels.votes import vote_kernel
+from kinesphere.markerless.levelset import (
+    features_of,
+    from_mask,
+    mask_of,
+    segment,
+    signed_distance,
+)
+from kinesphere.markerless.settings import TrackSettings
+
+pytestmark = pytest.mark.slow  # in plain Python
+
+H, W = 120, 150
+
+
+def disc(x, y, r):
+    row, col = np.mgrid[:H, :W]
+    return (col - x) ** 2 + (row - y) ** 2 < r * r
+
+
+def picture(mask, rng, inside=(150, 80, 70), outside=(90, 110, 120), noise=12):
+    image = np.where(mask[..., None], inside, outside) + rng.normal(scale=noise, size=(H, W, 3))
+    return np.clip(image, 0, 255).astype(np.uint8)
+
+
+def overlap(a, b):
+    return (a & b).sum() / (a | b).sum()
+
+
+@pytest.mark.parametrize("features", ["grey", "colour", "texture"])
+def test_a_disc_is_found_from_another_beside_it(rng, features):
+    truth, start = disc(75, 60, 25), disc(82, 55, 22)
+    settings = TrackSettings(method="level-set", features=features, rounds=8)
+    image = picture(truth, rng, inside=(190, 120, 110), outside=(70, 100, 110))
+    found = segment(image, start, settings)
+    assert overlap(start, truth) < 0.7
+    assert overlap(mask_of(found, truth), truth) > 0.95
+
+
+def test_regions_that_look_alike_move_nothing(rng):
+    start = disc(75, 60, 25)
+    image = picture(start, rng, inside=(100, 100, 100), outside=(100, 100, 100), noise=3)
+    settings = TrackSettings(method="level-set", length=0.0)
+    assert overlap(mask_of(segment(image, start, settings), start), start) > 0.9
+
+
+def test_the_shape_term_holds_a_contour_that_the_image_pulls_away(rng):
+    person, distraction = disc(60, 60, 25), disc(95, 60, 20)
+    image = picture(person | distraction, rng)
+    free = mask_of(segment(image, person, TrackSettings(method="level-set", rounds=10)), person)
+    held = mask_of(
+        segment(image, person, TrackSettings(method="coupled", rounds=10), shape=0.3), person
+    )
+    assert overlap(held, person) > overlap(free, person) + 0.05
+
+
+def test_length_shortens_a_contour_where_nothing_else_acts():
+    mask = disc(75, 60, 25)
+    mask[58:62, 95:125] = True  # a thorn
+    phi = signed_distance(mask.astype(np.uint8))
+    flat = np.zeros((H, W, 1), dtype=np.uint8)
+    args = (np.zeros((1, 256)), 4.0, 0.0, phi.copy(), False, 2.0, 8.0, 0.7, 150)
+    before = (phi > 0)[:, 100:].sum()
+    evolve_kernel(phi, flat, *args)
+    assert (phi > 0)[:, 100:].sum() < 0.5 * before
+    assert (phi > 0).sum() > 0.8 * disc(75, 60, 25).sum()
+
+
+def test_signed_distance_is_a_distance():
+    phi = signed_distance(disc(75, 60, 25).astype(np.uint8))
+    row, col = np.mgrid[:H, :W]
+    exact = np.clip(25 - np.hypot(col - 75, row - 60), -60, 60)
+    assert np.abs(phi - exact).max() < 1.2  # px; pixels are squares
+
+
+def test_no_model_in_the_image_is_no_silhouette(rng):
+    nobody = np.zeros((H, W), dtype=bool)
+    assert segment(picture(nobody, rng), nobody, TrackSettings()) is None
+
+
+def test_contour_points_lie_on_the_circle_and_normals_point_outward():
+    mask = cv2.circle(np.zeros((H, W), np.uint8), (75, 60), 25, 255, -1)
+    phi = from_mask(mask).phi
+    taken = np.zeros((H // 3 + 1, W // 3 + 1), dtype=bool)
+    points, normals = np.empty((taken.size, 2)), np.empty((taken.size, 2))
+    n = contour_kernel(phi, 3, points, normals, taken)
+    out = points[:n] - [75, 60]
+    radius = np.linalg.norm(out, axis=1)
+    assert 40 < n < 120
+    assert np.abs(radius - 25.3).max() < 1.0
+    assert ((out / radius[:, None] * normals[:n]).sum(axis=1) > 0.95).all()
+
+
+def test_votes_go_to_the_limb_of_the_many_near_rim_points():
+    rim = np.array([[10.0, 1.0], [10, 2], [10, 3], [13, 2.2]])
+    limbs = np.array([0, 0, 0, 1], dtype=np.int32)
+    normals = np.tile([1.0, 0.0], (4, 1))
+    points = np.array([[11.0, 2.0], [11.0, 2.0], [40.0, 2.0]])
+    looks = np.array([[1.0, 0.0], [-1.0, 0.0], [1.0, 0.0]])
+    match, far = np.empty(3, dtype=np.int32), np.empty(3)
+    vote_kernel(points, looks, rim, normals, limbs, 8.0, 0.5, match, far)
+    assert match.tolist() == [1, -1, -1]  # the nearest of limb 0; looks away; too far
+    assert far[0] == pytest.approx(1.0)
+    assert np.isnan(far[1:]).all()
+
+
+def test_features_have_the_channels_their_name_says(rng):
+    image = picture(disc(75, 60, 25), rng)
+    counts = {kind: features_of(image, kind).shape[2] for kind in ("grey", "colour", "texture")}
+    assert counts == {"grey": 1, "colour": 3, "texture": 4}
+    flat = np.full((H, W, 3), 90, np.uint8)
+    assert_allclose(features_of(flat, "texture")[..., 3], 0, atol=1)
