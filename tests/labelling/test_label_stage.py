@@ -183,6 +183,28 @@ def test_the_order_of_pieces_and_ghosts_beside_a_whole_recording_change_no_label
     assert_array_equal(found[0].confidence[:18], found[1].confidence[:18])
 
 
+def test_of_two_bodies_one_is_labelled_and_that_is_said(legs, rng):
+    model, recording = legs
+    half = recording.n_frames // 2
+    away = np.linspace(1, 4, half)[:, None, None] * np.array([1.0, 0.2, 0.0])
+    one, other = recording.markers[:half], recording.markers[half : 2 * half] + away
+    both = Recording(
+        np.concatenate([one, other], axis=1), tuple(f"*{i}" for i in range(36)), recording.rate
+    )
+    found = label(stripped(both, rng), model)
+    bodies = [
+        sum(
+            np.array_equal(found.markers[:, found.labels.index(name)], body[:, i])
+            for i, name in enumerate(recording.labels)
+            if name in found.labels
+        )
+        for body in (one, other)
+    ]
+    assert min(bodies) == 0
+    assert max(bodies) == sum(name in found.labels for name in recording.labels) >= 16
+    assert found.history[-1].warnings[0].startswith("2 bodies are in the volume; the one that")
+
+
 def test_no_frames_are_refused(legs):
     model, recording = legs
     with pytest.raises(BadRecording, match="nothing to label"):

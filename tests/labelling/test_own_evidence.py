@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from kinesphere.labelling.labelled import Labelled, give
 from kinesphere.labelling.own_distances import measured_anew, own_distances
 from kinesphere.labelling.personal import personal_template, recognise_rest
+from kinesphere.labelling.propagation import propagate
 from kinesphere.labelling.recheck import recheck
 from kinesphere.labelling.runs import Run
 from kinesphere.labelling.template import of_one_segment, template_of
@@ -76,6 +77,26 @@ def test_a_label_measured_anew_is_as_if_all_were(markers):
     anew, all_anew = measured_anew(own, without, 5), own_distances(without)
     assert_allclose(anew.mean, all_anew.mean)
     assert_allclose(anew.deviation, all_anew.deviation)
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_loose_fits_wait_while_a_label_of_the_segment_is_unknown(legs, known):
+    model, recording = legs
+    markers = recording.markers[:N].copy()
+    toe, side = model.labels.index("LTOE"), model.labels.index("LMT5")
+    # skin that slips by a centimetre: no stranger, but no close fit either
+    markers[CUT:, side] += 0.01 * np.array([0.0, 1.0, 0.0])
+    markers[CUT:, toe] = np.nan
+    if not known:
+        markers[:, toe] = np.nan
+    tracks = [(Run(i, 0, N),) for i in range(18) if i not in (toe, side)]
+    tracks += [(Run(side, 0, CUT),), (Run(toe, 0, CUT),), (Run(side, CUT, N),)]
+    right = [track[0].column for track in tracks]
+    right[-2] = toe if known else -1
+    state = labelled(markers, tracks, [*right[:-1], -1])
+    kin = of_one_segment(model, model.labels)
+    propagate(state, markers, recording.rate, set(), kin, late=True)
+    assert state.labels[-1] == (side if known else -1)
 
 
 class TestRest:
