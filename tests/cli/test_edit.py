@@ -72,3 +72,13 @@ def test_a_bad_edit_leaves_nothing_behind(solved, folders, call, tmp_path, text,
     assert says in called.err
     assert len(called.error_lines) == 1
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("spelled", ["walk", "bent/../walk"])
+def test_a_solution_is_not_edited_onto_itself(solved, folders, call, spelled):
+    (folders / "bent").mkdir(exist_ok=True)
+    before = (solved / "recording.c3d").read_bytes()
+    called = call("edit", solved, "--apply", folders / "edits.toml", "-o", folders / spelled)
+    assert called.code == 2
+    assert "is read from; name another place" in called.err
+    assert (solved / "recording.c3d").read_bytes() == before

@@ -104,6 +104,20 @@ def test_what_is_not_seen_stays_so(solution):
     assert np.isfinite(bent.motion.rotations).all()
 
 
+def test_an_edit_that_changes_nothing_is_said(solution):
+    angles = np.array(solution.parameters.angles)
+    j = solution.skeleton.joint_names.index("left_elbow")
+    angles[10:20, j] = np.nan
+    gappy = replace(solution, parameters=replace(solution.parameters, angles=angles))
+    hidden = edit(add_deg=30.0, frames=(gappy.parameters.first_frame + 10,) * 2)
+    half = edit(add_deg=30.0, frames=(gappy.parameters.first_frame + 15,) * 2, blend_s=1.0)
+    step = apply_edits(gappy, [half, hidden]).history[-1]
+    said = [warning for warning in step.warnings if "changes nothing" in warning]
+    assert said == ["edit 2 changes nothing: axis 1 of left_elbow is known in none of its frames"]
+    whole = (np.flatnonzero(np.isfinite(angles[:, j, 0]))).size
+    assert 0 < step.findings["frames"]["left_elbow"] < whole
+
+
 def test_rebuilt_and_edited_agree(solution):
     """A motion that is nothing but its parameters is edited by its parameters alone."""
     rebuilt = replace(solution, motion=motion_from_parameters(solution.parameters))

@@ -27,11 +27,12 @@ def edit(
     Example: [bold]kinesphere edit walk --apply raise.toml -o raised[/bold]
     """
     from kinesphere.cli.console import print_json, print_table, print_title, print_warnings, stdout
-    from kinesphere.cli.files import REPORT, read_solved, write_solved
+    from kinesphere.cli.files import REPORT, check_apart, read_solved, write_solved
     from kinesphere.data.edits import change_in_words, frames_in_words
     from kinesphere.editing import apply_edits
     from kinesphere.io import check_solution_place, read_edits
 
+    check_apart(output, directory)
     check_solution_place(output, [REPORT])
     edits = read_edits(apply)
     solution = apply_edits(read_solved(directory), edits)

@@ -29,6 +29,14 @@ def read_solved(path: Path) -> Solution:
     return found
 
 
+def check_apart(output: Path, *sources: Path | None) -> None:
+    """Raise if the result would be written over something it is made from."""
+    for source in sources:
+        there = source is not None and output.exists() and source.exists()
+        if there and output.samefile(source):  # type: ignore[arg-type]
+            raise BadArgument(f"{output} is read from; name another place for the result")
+
+
 def check_target(target: Path) -> None:
     """Raise unless a file, or for a name without suffix a solved folder, can be written there."""
     if target.suffix and not target.is_dir():

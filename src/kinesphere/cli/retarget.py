@@ -71,16 +71,13 @@ def retarget(
     [bold]kinesphere retarget walk --height 1.55 -o small[/bold]
     """
     from kinesphere.cli.console import print_json, print_pairs, print_title, print_warnings, stdout
-    from kinesphere.cli.files import REPORT, check_target
+    from kinesphere.cli.files import REPORT, check_apart, check_target
     from kinesphere.data import Motion, Solution
     from kinesphere.io import check_solution_place, read, read_parts
 
     if (onto is None) == (height is None):
         raise BadArgument("name either --onto RIG or --height M, and not both")
-    for read_from in (source, onto):
-        there = read_from is not None and output.exists() and read_from.exists()
-        if there and output.samefile(read_from):  # type: ignore[arg-type]
-            raise BadArgument(f"{output} is read from; name another place for the result")
+    check_apart(output, source, onto)
     if output.suffix and not output.is_dir():
         check_target(output)
     else:

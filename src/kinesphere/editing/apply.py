@@ -17,7 +17,7 @@ from kinesphere.data import (
     motion_from_parameters,
 )
 from kinesphere.data.edits import Edit
-from kinesphere.editing.parameters import edit_parameters
+from kinesphere.editing.parameters import edit_parameters, unseen_edits
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,8 @@ def apply_edits(solution: Solution, edits: Sequence[Edit]) -> Solution:
     Returns
     -------
     Solution
-        Its history says which edits were made. Angles that are NaN stay so.
+        Its history says which edits were made, and which change nothing: angles that are NaN
+        stay so.
 
     Raises
     ------
@@ -65,7 +66,7 @@ def apply_edits(solution: Solution, edits: Sequence[Edit]) -> Solution:
         "editing",
         {"edits": [edit.model_dump(mode="json", exclude_none=True) for edit in edits]},
         {"frames": dict(changed)},
-        _warnings(solution.recording),
+        (*unseen_edits(parameters, edits), *_warnings(solution.recording)),
         __version__,
     )
     history = (*solution.history, step)

@@ -36,6 +36,7 @@ def edit_parameters(
                 _edit_root(edit, weights, turns, places)
             else:
                 column = _column(parameters, edit, angles, twists)
+                weights[np.isnan(column)] = 0.0
                 column += weights * _change(edit, column)
                 column[:] = _half_open(column)
         except BadSetting as error:
@@ -45,6 +46,23 @@ def edit_parameters(
         parameters, angles=angles, twists=twists, root_rotations=turns, root_positions=places
     )
     return edited, changed
+
+
+def unseen_edits(parameters: Parameters, edits: Sequence[Edit]) -> list[str]:
+    """Return a sentence for each edit that changes nothing: its angle is NaN in all its frames."""
+    said = []
+    for number, edit in enumerate(edits, start=1):
+        if edit.joint == ROOT:
+            continue
+        chosen = edit_weights(edit, parameters.n_frames, parameters.rate, parameters.first_frame)
+        column = _column(parameters, edit, parameters.angles, parameters.twists)
+        if np.isnan(column[chosen > 0]).all():
+            axis = edit.axis if edit.axis == "twist" else f"axis {edit.axis}"
+            said.append(
+                f"edit {number} changes nothing: {axis} of {edit.joint} is known in none of its "
+                "frames"
+            )
+    return said
 
 
 def _edit_root(edit: Edit, weights: Array, turns: Array, places: Array) -> None:
