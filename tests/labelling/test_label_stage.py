@@ -166,6 +166,45 @@ def test_pieces_hidden_markers_and_ghosts(legs, rng):
     assert right >= 0.9 * there
 
 
+def test_the_order_of_pieces_and_ghosts_beside_a_whole_recording_change_no_label(legs, rng):
+    model, recording = legs
+    n = recording.n_frames
+    ghosts = np.full((n, 40, 3), np.nan)
+    for k in range(40):
+        start = int(rng.integers(n - 15))
+        ghosts[start : start + 15, k] = rng.uniform(-1, 2, 3)
+    crowd = np.concatenate([recording.markers, ghosts], axis=1)
+    found = []
+    for _ in range(2):
+        order = rng.permutation(crowd.shape[1])
+        names = tuple(f"*{i}" for i in range(crowd.shape[1]))
+        found.append(label(Recording(crowd[:, order], names, recording.rate), model))
+        assert_labelled_as(found[-1], recording)
+    assert_array_equal(found[0].confidence[:18], found[1].confidence[:18])
+
+
+def test_of_two_bodies_one_is_labelled_and_that_is_said(legs, rng):
+    model, recording = legs
+    half = recording.n_frames // 2
+    away = np.linspace(1, 4, half)[:, None, None] * np.array([1.0, 0.2, 0.0])
+    one, other = recording.markers[:half], recording.markers[half : 2 * half] + away
+    both = Recording(
+        np.concatenate([one, other], axis=1), tuple(f"*{i}" for i in range(36)), recording.rate
+    )
+    found = label(stripped(both, rng), model)
+    bodies = [
+        sum(
+            np.array_equal(found.markers[:, found.labels.index(name)], body[:, i])
+            for i, name in enumerate(recording.labels)
+            if name in found.labels
+        )
+        for body in (one, other)
+    ]
+    assert min(bodies) == 0
+    assert max(bodies) == sum(name in found.labels for name in recording.labels) >= 16
+    assert found.history[-1].warnings[0].startswith("2 bodies are in the volume; the one that")
+
+
 def test_no_frames_are_refused(legs):
     model, recording = legs
     with pytest.raises(BadRecording, match="nothing to label"):

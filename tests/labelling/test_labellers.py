@@ -9,6 +9,7 @@ from numpy.testing import assert_array_equal
 from scipy.spatial.transform import Rotation
 
 from kinesphere.errors import BadModel
+from kinesphere.geometry.rigid import fit_rigid, out_of_frame
 from kinesphere.labelling.huang_xia import match_huang_xia
 from kinesphere.labelling.pair_statistics import match_pair_statistics
 from kinesphere.labelling.stage import LABELLERS
@@ -138,3 +139,17 @@ class TestPairStatistics:
         assert_array_equal(
             given(match_pair_statistics(points, model)), np.arange(recording.n_markers)
         )
+
+    def test_a_limb_that_rests_is_still_that_limb(self, legs):
+        # steady with everything, as no limb of those who moved was
+        model, recording = legs
+        markers = recording.markers.copy()
+        at = {s.name: list(recording.columns(s.markers)) for s in model.segments}
+        rested = [c for x in ("left_thigh", "left_shank", "left_foot") for c in at[x]]
+        pelvis = markers[:, at["pelvis"]]
+        pose = fit_rigid(pelvis[0], pelvis)
+        markers[:, rested] = out_of_frame(pose.rotations, pose.shifts, markers[0, rested])
+        labels = given(match_pair_statistics(markers, model))
+        wrong = (labels >= 0) & (labels != np.arange(recording.n_markers))
+        assert not wrong.any()
+        assert (labels >= 0).sum() >= 15

@@ -125,6 +125,35 @@ class TestExchanges:
             assert_allclose(terms, kernels.linear_terms(labels, problem.costs), atol=SINGLE)
             assert_array_equal(holder, problem.holders(labels))
 
+    @pytest.mark.parametrize("stiller", [0.25, 1.0])
+    def test_a_pair_that_rests_costs_a_share_of_one_that_moves_as_much_more(self, stiller):
+        one, at = np.ones((2, 2)), np.full((2, 2), -3.0)
+        found = []
+        for change in (-0.4, 0.0, 0.4):
+            costs = np.zeros((2, 2, 2, 2), dtype=np.float32)
+            kernels.pair_costs(
+                one, at + change, 0.01 * one, one, one, one, at, one, stiller, 3.0, costs
+            )
+            found.append(costs[0, 0, 1, 1])
+            assert_array_equal(costs[0, 0, 0], 0)
+            assert_allclose(costs[0, 0, 1, 1], costs[1, 1, 0, 0])
+        still, usual, moving = found
+        y = 0.4**2 / 2
+        soft = [y * share / (1 + y * share / 6) for share in (stiller, 1.0)]
+        assert_allclose([still - usual, moving - usual], soft, atol=SINGLE)
+
+    def test_what_one_recording_rested_in_counts_in_full(self, legs):
+        model, recording = legs
+        found = signature(recording.markers)
+        scale = scale_of(found.mean)
+        alone = template_of(replace(model, statistics=model.statistics[:1]))
+        costs = [
+            problem_of(found, scale, replace(alone, n_recordings=n)).costs for n in (1, 2, 4, 9)
+        ]
+        assert (costs[0] > costs[1] + SINGLE).any()
+        assert (costs[1] > costs[2] + SINGLE).any()
+        assert_array_equal(costs[2], costs[3])
+
     def test_a_descent_never_climbs(self, problem, rng):
         labels = rng.permutation(problem.n_points).astype(np.int64)
         better = problem.descend(labels, nullable=False)

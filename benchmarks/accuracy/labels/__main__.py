@@ -16,6 +16,7 @@ PARTS = {
     "windows-2s": lambda: clean.windows(2.0, several=True),
     "missing": missing.missing,
     "broken": broken.broken,
+    "broken-fresh": lambda: broken.broken(broken.FRESH),
     "halves": elsewhere.halves,
     "functional": elsewhere.functional,
     "creatures": elsewhere.creatures,

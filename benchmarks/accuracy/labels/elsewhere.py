@@ -111,16 +111,19 @@ def creatures() -> list[dict[str, Any]]:
 
 
 def two_people() -> list[dict[str, Any]]:
-    """Two people in one volume, labelled one after the other by two models."""
+    """Two people in one volume, told apart by the model of each: learnt from later in the file."""
     a, b = cmu("02_05"), cmu("135_02")
-    n = min(a.n_frames, b.n_frames)
+    n = a.n_frames // 2
     rng = np.random.default_rng(6)
     together = np.concatenate([a.markers[:n], b.markers[:n] + np.array([0.5, 0.0, 1.0])], axis=1)
     points, order = shuffled(together, rng)
     raw = Recording(points, tuple(f"*{i}" for i in range(82)), a.rate)
     rows = []
-    for name, offset in (("02_05", 0), ("135_02", 41)):
-        model = model_of([x for x in others(name) if x not in ("02_05", "135_02")])
+    for name, offset, recording in (("02_05", 0, a), ("135_02", 41, b)):
+        later = replace(recording, markers=recording.markers[n:], residuals=None, outputs=())
+        later = replace(later, analog=None, events=())
+        known = built_in_model("cmu41")
+        model = replace(known, statistics=(marker_statistics(later, known.labels, name),))
         found = label(raw, model)
         right = wrong = 0
         for column, given in enumerate(found.labels):
@@ -135,8 +138,8 @@ def two_people() -> list[dict[str, Any]]:
             right += truth == offset + model.labels.index(given)
             wrong += truth != offset + model.labels.index(given)
         rows.append(
-            {"set": f"two people, {name}", "what": "both in one volume", "points": 41,
-             "right": int(right), "wrong": int(wrong)}
+            {"set": f"two people, {name}", "what": "by the model of one (same person)",
+             "points": 41, "right": int(right), "wrong": int(wrong)}
         )  # fmt: skip
         print(rows[-1], flush=True)
     return rows

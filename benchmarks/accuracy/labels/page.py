@@ -108,6 +108,14 @@ def _broken(rows: Rows) -> str:
     )
 
 
+def _broken_anew(rows: Rows) -> str:
+    return (
+        "The settings of the labelling of raw captures were chosen while looking at the captures "
+        "above; these are the same recordings with other ghosts, gaps, cuts and noise, run once, "
+        "after the last change.\n\n" + _broken(rows).partition("\n\n")[2]
+    )
+
+
 def _broken_line(name: str, ghosts: object, hidden: object, rows: Rows) -> str:
     samples, right = sum(r["samples"] for r in rows), sum(r["right"] for r in rows)
     wrong = sum(r["wrong"] for r in rows)
@@ -158,6 +166,7 @@ _SECTIONS: dict[str, tuple[str, Callable[[Rows], str]]] = {
     "windows-2s": ("Windows of 2 s, model of three other people", _windows),
     "missing": ("Markers that are not there", _missing),
     "broken": ("Ghosts, hidden markers, cut trajectories", _broken),
+    "broken-fresh": ("The same, broken anew", _broken_anew),
     "halves": ("Other layouts, first half against second", _elsewhere),
     "functional": ("Functional trials, one by another", _elsewhere),
     "creatures": ("Bodies that are no people", _elsewhere),

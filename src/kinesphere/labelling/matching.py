@@ -22,6 +22,8 @@ class Match:
     """Nats a pair by which labels fit better than nothing; NaN where a method has no such thing."""
     note: str = ""
     """Why labels were refused, if they were."""
+    bodies: int = 1
+    """Bodies that were there; the one that the model fits best has labels."""
 
     def refused(self, note: str) -> "Match":
         """Return the same without any label."""

@@ -40,7 +40,25 @@ def own_distances(points: Array, floor: float = FLOOR) -> OwnDistances:
     """Measure the distances of labelled points (n_frames, n_labels, 3) m, NaN where not seen."""
     n = points.shape[1]
     mean, square, count = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
-    _moments(np.ascontiguousarray(points), mean, square, count)
+    _moments(np.ascontiguousarray(points), 0, n, mean, square, count)
+    return _from_moments(mean, square, count, floor)
+
+
+def measured_anew(
+    own: OwnDistances, points: Array, label: int, floor: float = FLOOR
+) -> OwnDistances:
+    """Return the distances with those of one label measured on other points."""
+    n = points.shape[1]
+    mean, square, count = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
+    _moments(np.ascontiguousarray(points), label, label + 1, mean, square, count)
+    anew = _from_moments(mean, square, count, floor)
+    middle, deviation = own.mean.copy(), own.deviation.copy()
+    for one, other in ((middle, anew.mean), (deviation, anew.deviation)):
+        one[label] = one[:, label] = other[label]
+    return OwnDistances(middle, deviation)
+
+
+def _from_moments(mean: Array, square: Array, count: Array, floor: float) -> OwnDistances:
     enough = count >= FEWEST_FRAMES
     middle = np.where(enough, mean / np.maximum(count, 1), np.nan)
     variance = np.maximum(square / np.maximum(count, 1) - np.nan_to_num(middle) ** 2, 0.0)
@@ -48,14 +66,18 @@ def own_distances(points: Array, floor: float = FLOOR) -> OwnDistances:
 
 
 @kernel
-def _moments(points: Array, total: Array, square: Array, count: Array) -> None:
+def _moments(
+    points: Array, first: int, last: int, total: Array, square: Array, count: Array
+) -> None:
     n_frames, n = points.shape[0], points.shape[1]
     step = max(1, n_frames // 2000)
     for t in range(0, n_frames, step):
-        for i in range(n):
+        for i in range(first, last):
             if not np.isfinite(points[t, i, 0]):
                 continue
-            for j in range(i):
+            for j in range(i if last - first == n else n):
+                if j == i:
+                    continue
                 d = 0.0
                 for x in range(3):
                     d += (points[t, i, x] - points[t, j, x]) ** 2

@@ -9,17 +9,18 @@ References
    Eur. J. Oper. Res. 46(1), 93-100.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, TopologicalModel
-from kinesphere.geometry.pair_distances import pair_distances
-from kinesphere.geometry.signature import FRAMES, Signature, evenly_spread, scale_of, signature
+from kinesphere.geometry.signature import Signature, scale_of, signature
 from kinesphere.labelling.blocks import Moves, block_moves, twins
+from kinesphere.labelling.bodies import bodies_of
 from kinesphere.labelling.matching import Match, nothing
+from kinesphere.labelling.plausible import is_still, plausible
 from kinesphere.labelling.problem import Labels, Problem, problem_of
 from kinesphere.labelling.search import (
     doubt,
@@ -33,19 +34,11 @@ from kinesphere.labelling.template import LEAST_LABELS, Template, template_of
 MARGIN = 8.0
 """Nats of energy at which a label is held 63 % sure: neighbouring pairs tell much the same, so a
 nat of energy is worth far less than one of evidence."""
-LOOSE = (4.0, 0.04)
-"""A point is rigid with nothing if its second-steadiest distance varies by more than this many
-times what is usual, and by more than this share of the scale."""
-SPARE = 1.5
-"""Most points looked at, as a multiple of the labels: the longest seen ones."""
 RESCALED = 0.01
 """Change of scale after a first labelling from which on costs are computed anew."""
 WORST_FIT = 0.8
 """Nats a pair by which labels must fit better than nothing; right labels of other people have 1.3
 and more, points that move at random reach 0.5."""
-STILL = 0.0005
-"""Median deviation of distances, in scales, below which nothing moves: 3 mm on a full layout.
-Standing quietly is less, any movement ten times as much."""
 LEAST_AGREEMENT = 0.3
 """Handedness that must agree: right labels have 0.6 and more, those of a mirrored body −0.6."""
 
@@ -98,14 +91,17 @@ def match_pair_statistics(
     if seen.any(axis=1).sum() < 2:
         return nothing(n_points, "one frame alone shows no motion to recognise markers by")
     kept = np.flatnonzero(seen.sum(axis=0) >= 2)
+    bodies = bodies_of(points[:, kept], layout.template.n) if start is None else []
+    if bodies:
+        return _best_of([kept[body] for body in bodies], points, model)
     if start is None:
-        kept = _plausible(points, seen, layout.template.n)
+        kept = plausible(points, seen, layout.template.n)
     if len(kept) < LEAST_LABELS:
         return nothing(
             n_points, f"{len(kept)} markers are seen; {LEAST_LABELS} at least can be told apart"
         )
     found = signature(points[:, kept])
-    if start is None and _is_still(found):
+    if start is None and is_still(found):
         return nothing(
             n_points, "nothing moves: markers are recognised by how they move with each other"
         )
@@ -116,6 +112,16 @@ def match_pair_statistics(
         back[layout.into] = np.arange(layout.template.n)
         solved = _continued(found, layout, back[start[kept]])
     return _match(solved, layout, kept, n_points, model.name)
+
+
+def _best_of(bodies: list[NDArray[np.intp]], points: Array, model: TopologicalModel) -> Match:
+    """Return the labels of the body that the model fits best; the others get none."""
+    found = [match_pair_statistics(points[:, body], model) for body in bodies]
+    best = max(range(len(found)), key=lambda k: (not found[k].note, found[k].fit, -k))
+    labels = np.full(points.shape[1], -1, dtype=np.int64)
+    sure = np.zeros(points.shape[1])
+    labels[bodies[best]], sure[bodies[best]] = found[best].labels, found[best].confidence
+    return replace(found[best], labels=labels, confidence=sure, bodies=len(bodies))
 
 
 def _match(
@@ -155,33 +161,6 @@ def _layout_of(model: TopologicalModel) -> _Layout:
         twins(model, template.labels),
         np.array([into[label] for label in template.labels], dtype=np.int64),
     )
-
-
-def _is_still(found: Signature) -> bool:
-    pairs = found.std[np.triu_indices(found.n, 1)]
-    pairs = pairs[np.isfinite(pairs)]
-    return not len(pairs) or float(np.median(pairs)) < STILL * scale_of(found.mean)
-
-
-def _plausible(points: Array, seen: NDArray[np.bool_], n_labels: int) -> NDArray[np.intp]:
-    """Return the points that may be markers of a body: seen long, and steady beside others."""
-    count = seen.sum(axis=0)
-    kept = np.flatnonzero(count >= 2)
-    if len(kept) <= n_labels:
-        return kept
-    most = int(SPARE * n_labels) + 4
-    if len(kept) > most:
-        kept = np.sort(kept[np.argsort(-count[kept], kind="stable")[:most]])
-    found = _deviations(points[:, kept])
-    steady = np.sort(np.where(np.isnan(found), np.inf, found), axis=1)[:, 2]
-    limit = max(LOOSE[0] * float(np.median(steady)), LOOSE[1])
-    return kept[steady <= limit]
-
-
-def _deviations(points: Array) -> Array:
-    """Return deviations of distances in scales, NaN where never seen together; (n, n)."""
-    found = pair_distances(points[evenly_spread(len(points), FRAMES)])
-    return np.asarray(found.std / scale_of(found.mean))
 
 
 def _solve(found: Signature, layout: _Layout) -> _Solved:

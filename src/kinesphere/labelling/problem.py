@@ -21,10 +21,14 @@ alike where all markers are there, .15 better than .05 where some are missing.""
 UNKNOWN = 3.0
 """Nats from which on a pair fits its labels worse than nothing does: right pairs have 1 on average,
 a point at a random place with a random spread 4 to 5."""
-INTO_FREE = 0.25
+INTO_FREE = 0.125
 """What a nat counts that keeps a point from a label nobody bears. An exchange of two points must
 fit both of them worse; one that slides into the place of a missing neighbour is held by its own
 distances alone, and those differ between people."""
+STILLER = 0.25
+"""Least that a deviation below the template's counts, beside one above it: a limb that rests while
+it is recorded is steady with everything, forty pairs at once that tell one thing. What a single
+recording rested in is not known, so it counts one over the number of recordings."""
 FEWEST_FRAMES = 5
 """Frames together that make a pair count in full; one alone says nothing of a spread."""
 
@@ -157,6 +161,7 @@ def problem_of(found: Signature, scale: float, template: Template) -> Problem:
         template.variance,
         template.log_std,
         template.log_variance,
+        max(STILLER, 1 / template.n_recordings),
         UNKNOWN,
         costs,
     )

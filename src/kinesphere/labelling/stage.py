@@ -7,15 +7,17 @@ import numpy as np
 from kinesphere.data import Array, Json, Recording, Step, TopologicalModel, settings_as_json
 from kinesphere.errors import BadRecording
 from kinesphere.labelling.huang_xia import match_huang_xia
+from kinesphere.labelling.labelled import Labelled
 from kinesphere.labelling.matching import Labeller
 from kinesphere.labelling.pair_statistics import match_pair_statistics
+from kinesphere.labelling.recognition import WHOLE
 from kinesphere.labelling.runs import Run, Track, points_of
 from kinesphere.labelling.settings import LabellingSettings
 from kinesphere.labelling.similarity_tree import match_similarity_tree
 from kinesphere.labelling.spelling import spelled
 from kinesphere.labelling.subjects import parse_labels
 from kinesphere.labelling.template import template_of
-from kinesphere.labelling.through_time import WHOLE, Labelled, label_through_time
+from kinesphere.labelling.through_time import label_through_time
 
 LABELLERS: dict[str, Labeller] = {
     "pair-statistics": match_pair_statistics,

@@ -130,6 +130,15 @@ def template_of(model: TopologicalModel, labels: Sequence[str] | None = None) ->
     )
 
 
+def of_one_segment(model: TopologicalModel, labels: tuple[str, ...]) -> NDArray[np.bool_]:
+    """Return which labels share a segment, as its own or shared ones, (n, n)."""
+    together = np.eye(len(labels), dtype=bool)
+    for segment in model.segments:
+        own = np.isin(labels, (*segment.markers, *segment.shared))
+        together |= own[:, None] & own
+    return together
+
+
 def _known_labels(model: TopologicalModel, labels: Sequence[str] | None) -> tuple[str, ...]:
     wanted = model.labels if labels is None else tuple(labels)
     seen = {

@@ -1,0 +1,45 @@
+"""Which points may be markers of a body at all, and whether anything moves."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array
+from kinesphere.geometry.pair_distances import pair_distances
+from kinesphere.geometry.signature import FRAMES, Signature, evenly_spread, scale_of
+
+LOOSE = (4.0, 0.04)
+"""A point is rigid with nothing if its second-steadiest distance varies by more than this many
+times what is usual, and by more than this share of the scale."""
+SPARE = 1.5
+"""Most points looked at, as a multiple of the labels: the longest seen ones."""
+STILL = 0.0005
+"""Median deviation of distances, in scales, below which nothing moves: 3 mm on a full layout.
+Standing quietly is less, any movement ten times as much."""
+
+
+def is_still(found: Signature) -> bool:
+    """Tell whether nothing moves against anything else."""
+    pairs = found.std[np.triu_indices(found.n, 1)]
+    pairs = pairs[np.isfinite(pairs)]
+    return not len(pairs) or float(np.median(pairs)) < STILL * scale_of(found.mean)
+
+
+def plausible(points: Array, seen: NDArray[np.bool_], n_labels: int) -> NDArray[np.intp]:
+    """Return the points that may be markers of a body: seen long, and steady beside others."""
+    count = seen.sum(axis=0)
+    kept = np.flatnonzero(count >= 2)
+    if len(kept) <= n_labels:
+        return kept
+    most = int(SPARE * n_labels) + 4
+    if len(kept) > most:
+        kept = np.sort(kept[np.argsort(-count[kept], kind="stable")[:most]])
+    found = _deviations(points[:, kept])
+    steady = np.sort(np.where(np.isnan(found), np.inf, found), axis=1)[:, 2]
+    limit = max(LOOSE[0] * float(np.median(steady)), LOOSE[1])
+    return kept[steady <= limit]
+
+
+def _deviations(points: Array) -> Array:
+    """Return deviations of distances in scales, NaN where never seen together; (n, n)."""
+    found = pair_distances(points[evenly_spread(len(points), FRAMES)])
+    return np.asarray(found.std / scale_of(found.mean))
