@@ -54,7 +54,13 @@ def test_a_port_is_a_port(call, c3d, port):
 
 def test_it_serves_until_it_is_interrupted(c3d):
     command = [sys.executable, "-m", "kinesphere", "view", str(c3d), "--no-open", "--json"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+    # whoever starts the tests in the background has had the signal ignored
+    with subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    ) as process:
         lines = [process.stdout.readline()]
         while lines[-1].strip() not in (b"}", b""):
             lines.append(process.stdout.readline())
@@ -64,6 +70,9 @@ def test_it_serves_until_it_is_interrupted(c3d):
         with urllib.request.urlopen(told["address"], timeout=20) as page:
             assert b"<html" in page.read(10_000)
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=20)
+        try:
+            out, err = process.communicate(timeout=20)
+        finally:
+            process.kill()
     assert process.returncode == 0
     assert (out, err) == (b"", b"")
