@@ -10,6 +10,7 @@ from kinesphere.geometry.centre_terms import find_information, find_terms
 from kinesphere.geometry.centre_views import Turning as Turning
 from kinesphere.geometry.centre_views import View as View
 from kinesphere.geometry.medians import column_medians
+from kinesphere.geometry.skin import FEW, fit_through_skin
 from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
@@ -90,20 +91,17 @@ def fit_centre(
         Most steps of the descent.
     """
     n_poses = count_poses(view, expected)
-    # distances and orientation are two readings of the same sightings
-    looks = n_poses / hidden**2 / (1 if view.turning is None else 2)
     x, algebraic = expected, sphere_centre(view.points, expected)
     if np.linalg.norm(algebraic - expected) < FAR * spread:
         x = min((expected, algebraic), key=lambda start: _cost(view, start))
     prior = np.eye(3) / spread**2
-    x = _descend(view, x, expected, 0.01 * prior, looks, rounds)
+    x, information = _fit(view, x, expected, 0.01 * prior, hidden, rounds)
     if hinge is not None:
-        values, vectors = np.linalg.eigh(find_information(view, x, looks))
+        values, vectors = np.linalg.eigh(information)
         weakest = vectors[:, 0]
         if abs(weakest @ hinge) > ALIGNED and values[0] * spread**2 < FIRM:
             prior = prior + (tighter**2 - 1) / spread**2 * np.outer(weakest, weakest)
-    x = _descend(view, x, expected, prior, looks, rounds)
-    information = find_information(view, x, looks)
+    x, information = _fit(view, x, expected, prior, hidden, rounds)
     return CentreFit(
         centre=x,
         noise=_robust_noise(view, x),
@@ -112,6 +110,20 @@ def fit_centre(
         covariance=_inverse(information, prior, 1.0),
         n_poses=n_poses,
     )
+
+
+def _fit(
+    view: View, x: Array, expected: Array, prior: Array, hidden: float, rounds: int
+) -> tuple[Array, Array]:
+    """Return the centre, and what the motion tells about it, (3, 3) 1/m²."""
+    turning, n_poses = view.turning, count_poses(view, expected)
+    if turning is not None and turning.skin is not None and turning.known.sum() >= FEW:
+        fit = fit_through_skin(view, x, expected, prior, n_poses, hidden=hidden, rounds=rounds)
+        return fit.centre, fit.information
+    # distances and orientation are two readings of the same sightings
+    looks = n_poses / hidden**2 / (1 if turning is None else 2)
+    x = _descend(view, x, expected, prior, looks, rounds)
+    return x, find_information(view, x, looks)
 
 
 def count_poses(view: View, centre: Array) -> int:
