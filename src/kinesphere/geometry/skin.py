@@ -3,8 +3,7 @@
 Markers sit on skin, and skin follows the joint: the same pose is always wrong in the same way, so
 that no number of frames averages it out, and a centre takes it up as if it were motion. Here the
 errors of both limbs' poses are unknowns as well, linear in the joint's rotation. Their size is the
-data's word: in proportion to what the markers' residuals show of it, by as much as makes the
-recording likeliest (empirical Bayes).
+data's word: in proportion to what the markers' residuals show of it.
 """
 
 from typing import NamedTuple
@@ -20,10 +19,11 @@ from kinesphere.geometry.vectors import is_seen, lengths
 
 Array = NDArray[np.float64]
 
-LEAST = 1e-5
+LEAST = 1e-9
 """m, least movement of a marker with the skin: rounding makes no marker perfect."""
-SIZES = (0.03, 10.0)
-"""Least and largest size of what moves rigidly with the skin, in what does not."""
+RIGID = 1.5
+"""How many times more of the skin's movement is rigid, and shows in no residual, than is not: on
+synthetic skin the errors of hips are least from 1 to 1.5."""
 ONE_AXIS = 0.05
 """Share of the widest rotation's variance below which the second-widest counts as none."""
 DENSE = np.deg2rad(5.0)
@@ -32,6 +32,8 @@ FEW = 10
 """Poses below which nothing is said about skin."""
 STILL = 1e-3
 """rad, rms rotation of a joint below which nothing can be said to go with it."""
+ROUNDING = 1e-13
+"""Share of each unknown's own weight that keeps equations solvable: what rounding leaves."""
 SETTLED = 1e-6
 """m, step that ends the fit."""
 
@@ -90,8 +92,6 @@ class SkinFit(NamedTuple):
     """(3,) m, in the seeing limb."""
     information: Array
     """(3, 3) 1/m², what the motion tells about it."""
-    size: float
-    """How many times larger what moves rigidly with the skin came out than what does not."""
 
 
 class _Skin(NamedTuple):
@@ -119,8 +119,8 @@ def fit_through_skin(
 
     SCoRE's residual [1]_ in the turning limb, over the noise that both poses give it, with a linear
     map from the joint's rotation to each pose's error. The maps have a normal prior: the covariance
-    each pose would have if its markers moved as far as `skin_noise` says, times a common factor,
-    which expectation maximisation finds. Residuals have a soft-L1 loss.
+    each pose would have if its markers moved `RIGID` times as far as `skin_noise` says. Residuals
+    have a soft-L1 loss. The information reckons with ``hidden`` instead of `RIGID`.
 
     A hinge tells nothing apart that is linear in its one angle: there skin is not modelled, its
     information is ``hidden``² times less, and poses count alike however long they were held, so
@@ -151,12 +151,12 @@ def fit_through_skin(
     if has_one_axis(modes):
         modes, share = modes[:, :0], share * pose_weights(turning.back)
         looks = looks / hidden**2
-    skin = _Skin(modes, _root(turning.skin_seeing), _root(turning.skin))
+    skin = _Skin(modes, RIGID * _root(turning.skin_seeing), RIGID * _root(turning.skin))
     x, inner = start, turning.place(start).mean(axis=0)
-    size, z = 1.0, np.zeros(12 * modes.shape[1])
+    z = np.zeros(12 * modes.shape[1])
     ones = np.concatenate([np.zeros(6), np.ones(len(z))])
     for _ in range(rounds):
-        residual, columns = _equations(view, turning, x, inner, skin, size)
+        residual, columns = _equations(view, turning, x, inner, skin)
         scale, soft = soft_weights(lengths(residual + columns[:, :, 6:] @ z)[:, None], None, 3)
         w = share * soft[:, 0] * (looks / scale[0] ** 2)
         flat = columns.reshape(-1, columns.shape[2])
@@ -167,20 +167,27 @@ def fit_through_skin(
         whole[3:6, 3:6] += 1e-9 * np.trace(told[3:6, 3:6]) * np.eye(3)
         gradient = weighed.T @ residual.ravel()
         gradient[:3] += prior @ (x - expected)
-        inverse = np.linalg.inv(whole)
-        step = -inverse @ gradient
+        step = -_solve(whole, gradient)
         length = float(np.linalg.norm(step[:3]))
         short = min(1.0, 0.05 / max(length, 1e-12))
         x, inner, z = x + short * step[:3], inner + short * step[3:6], step[6:]
-        last = size
-        if len(z):
-            grown = np.sqrt((z @ z + np.trace(inverse[6:, 6:])) / len(z))
-            size = float(np.clip(size * grown, *SIZES))
-            z = z * last / size
-        if length < SETTLED and abs(size / last - 1) < 0.01:
+        if length < SETTLED:
             break
-    left = told[:3, :3] - whole[:3, 3:] @ np.linalg.solve(whole[3:, 3:], whole[3:, :3])
-    return SkinFit(x, _less_shaky(left, view, turning, float(scale[0]), looks), size)
+    # for what is told, skin may be as large as settings allow for
+    rest = whole[3:, 3:] - (1 - (RIGID / hidden) ** 2) * np.diag(ones[3:])
+    left = told[:3, :3] - whole[:3, 3:] @ _solve(rest, whole[3:, :3])
+    shaky = _shaking(view, turning, float(scale[0]), looks)
+    whole_told = told[:3, :3] if modes.shape[1] else left
+    return SkinFit(x, _less_shaky(left, whole_told, shaky))
+
+
+def _solve(matrix: Array, right: Array) -> Array:
+    """Solve symmetric equations whose unknowns may differ in size by 10⁸ and more."""
+    sizes = 1 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    scaled = sizes[:, None] * matrix * sizes + ROUNDING * np.eye(len(sizes))
+    rows = sizes if right.ndim == 1 else sizes[:, None]
+    solved: Array = rows * np.linalg.solve(scaled, rows * right)
+    return solved
 
 
 def _root(covariance: Array) -> Array:
@@ -190,7 +197,7 @@ def _root(covariance: Array) -> Array:
 
 
 def _equations(
-    view: View, turning: Turning, x: Array, inner: Array, skin: _Skin, size: float
+    view: View, turning: Turning, x: Array, inner: Array, skin: _Skin
 ) -> tuple[Array, Array]:
     """Return residuals (n, 3) over their noise, and their derivatives (n, 3, 6 + 12 k).
 
@@ -207,8 +214,8 @@ def _equations(
     columns[:, :, :3] = back
     columns[:, :, 3:6] = -w
     if k:
-        seeing = size * np.concatenate([-hat(x), np.eye(3)], axis=1) @ skin.seeing
-        own = size * np.concatenate([-hat(inner), np.eye(3)], axis=1) @ skin.turning
+        seeing = np.concatenate([-hat(x), np.eye(3)], axis=1) @ skin.seeing
+        own = np.concatenate([-hat(inner), np.eye(3)], axis=1) @ skin.turning
         middle = 6 + 6 * k
         moved = (back @ seeing)[:, :, None] * skin.modes[:, None, :, None]
         columns[:, :, 6:middle] = moved.reshape(n, 3, -1)
@@ -217,10 +224,19 @@ def _equations(
     return (turning.place(x) - inner) @ w.T, columns
 
 
-def _less_shaky(told: Array, view: View, turning: Turning, scale: float, looks: float) -> Array:
-    """Return information without what is only orientations that shake, (3, 3) 1/m²."""
+def _shaking(view: View, turning: Turning, scale: float, looks: float) -> float:
+    """Return the information, 1/m², that orientations seem to give because they shake."""
     shaky = (np.trace(turning.pose[:3, :3]) + np.trace(view.pose[:3, :3])) * 2 / 3
-    shaky *= min(1.0, scale**2) * looks / (scale * turning.noise) ** 2
-    values, vectors = np.linalg.eigh(told - shaky * np.eye(3))
-    cleared: Array = (vectors * np.maximum(values, 0.0)) @ vectors.T
+    return float(shaky * min(1.0, scale**2) * looks / (scale * turning.noise) ** 2)
+
+
+def _less_shaky(left: Array, whole: Array, shaky: float) -> Array:
+    """Return what is left of information less the share of the whole that is orientations' shake.
+
+    (3, 3) 1/m²; in directions about which the limbs hardly turn against each other that is all.
+    """
+    values, vectors = np.linalg.eigh(whole)
+    share = np.sqrt(np.maximum(1.0 - shaky / np.maximum(values, 1e-300), 0.0))
+    root = (vectors * share) @ vectors.T
+    cleared: Array = root @ left @ root
     return cleared
