@@ -10,7 +10,7 @@ from kinesphere.geometry.centre_terms import find_information, find_terms
 from kinesphere.geometry.centre_views import Turning as Turning
 from kinesphere.geometry.centre_views import View as View
 from kinesphere.geometry.medians import column_medians
-from kinesphere.geometry.skin import FEW, fit_through_skin
+from kinesphere.geometry.skin import FEW, fit_through_skin, hinge_axis
 from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
@@ -96,11 +96,8 @@ def fit_centre(
         x = min((expected, algebraic), key=lambda start: _cost(view, start))
     prior = np.eye(3) / spread**2
     x, information = _fit(view, x, expected, 0.01 * prior, hidden, rounds)
-    if hinge is not None:
-        values, vectors = np.linalg.eigh(information)
-        weakest = vectors[:, 0]
-        if abs(weakest @ hinge) > ALIGNED and values[0] * spread**2 < FIRM:
-            prior = prior + (tighter**2 - 1) / spread**2 * np.outer(weakest, weakest)
+    if hinge is not None and (along := _open_axis(view, information, spread, hinge)) is not None:
+        prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
     x, information = _fit(view, x, expected, prior, hidden, rounds)
     return CentreFit(
         centre=x,
@@ -110,6 +107,17 @@ def fit_centre(
         covariance=_inverse(information, prior, 1.0),
         n_poses=n_poses,
     )
+
+
+def _open_axis(view: View, information: Array, spread: float, hinge: Array) -> Array | None:
+    """Return the direction in which a hinge's centre is left to its expectation, (3,)."""
+    if view.turning is not None and view.turning.skin is not None:
+        along = hinge_axis(view.turning.rotations)
+        if along is not None:
+            return along
+    values, vectors = np.linalg.eigh(information)
+    aligned = abs(vectors[:, 0] @ hinge) > ALIGNED
+    return vectors[:, 0] if aligned and values[0] * spread**2 < FIRM else None
 
 
 def _fit(

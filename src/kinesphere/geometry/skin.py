@@ -52,6 +52,21 @@ def has_one_axis(modes: Array) -> bool:
     return bool(spread[1] < ONE_AXIS * spread[2])
 
 
+def hinge_axis(rotations: Array) -> Array | None:
+    """Return the one axis a joint turns about, (n, 3, 3) → (3,); None if it has more.
+
+    In the frame the rotations lead into. Fewer than `FEW` poses tell nothing.
+    """
+    r = rotations[np.isfinite(rotations).all(axis=(1, 2))]
+    if len(r) < FEW:
+        return None
+    modes = joint_modes(r)
+    if not has_one_axis(modes):
+        return None
+    axis: Array = mean_rotation(r) @ np.linalg.eigh(modes.T @ modes)[1][:, 2]
+    return axis
+
+
 def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
     """Return how far each marker moves in its limb with a joint, m rms in each direction, (m,).
 
