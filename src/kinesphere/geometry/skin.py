@@ -19,8 +19,10 @@ from kinesphere.geometry.vectors import is_seen, lengths
 
 Array = NDArray[np.float64]
 
-LEAST = 1e-9
-"""m, least movement of a marker with the skin: rounding makes no marker perfect."""
+LEAST = 1e-7
+"""m, movement of a marker with the skin below which there is none: rounding is all it is."""
+NONE = 1e-12
+"""m, what stands for none."""
 RIGID = 1.5
 """How many times more of the skin's movement is rigid, and shows in no residual, than is not: on
 synthetic skin the errors of hips are least from 1 to 1.5."""
@@ -89,15 +91,16 @@ def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
         slope = np.linalg.lstsq(q, off[known] - off[known].mean(axis=0), rcond=1e-6)[0]
         noise[m] = np.sqrt(np.mean((q @ slope) ** 2))
     # the fit itself takes up six of the coordinates: what is left looks smaller than it is
-    return np.asarray(np.maximum(noise * np.sqrt(3 * n / max(3 * n - 6, 1)), LEAST))
+    noise *= np.sqrt(3 * n / max(3 * n - 6, 1))
+    return np.where(noise > LEAST, noise, NONE)
 
 
 def pose_weights(rotations: Array) -> Array:
     """Return weights that make every pose count alike, however long it was held, (n,) of mean 1."""
     flat = rotations.reshape(len(rotations), 9)
     angle2 = np.maximum(3.0 - flat @ flat.T, 0.0)  # nearly the square of the angle between them
-    weights: Array = 1 / np.exp(-angle2 / (2 * DENSE**2)).sum(axis=1)
-    return weights / weights.mean()
+    weights = 1 / np.exp(-angle2 / (2 * DENSE**2)).sum(axis=1)
+    return np.asarray(weights / weights.mean())
 
 
 class SkinFit(NamedTuple):
@@ -162,7 +165,8 @@ def fit_through_skin(
     assert turning is not None
     assert turning.skin is not None
     assert turning.skin_seeing is not None
-    modes, share = joint_modes(turning.rotations[turning.known]), 1.0 / len(turning.back)
+    modes = joint_modes(turning.rotations[turning.known])
+    share = np.full(len(modes), 1 / len(modes))
     if has_one_axis(modes):
         modes, share = modes[:, :0], share * pose_weights(turning.back)
         looks = looks / hidden**2
