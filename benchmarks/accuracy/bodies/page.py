@@ -18,7 +18,8 @@ Written by `python -m benchmarks.accuracy.bodies`; every figure is in
 
 Labels are hidden before the run (`*0`, `*1`…); the program gets trajectories and nothing else.
 *ARI* is the adjusted Rand index of the marker bodies (Hubert & Arabie 1985), 1 where the partition
-is right. A joint is *wrong* if the two bodies it joins hold no limbs that meet. Names count as
+is right, over the markers of all trees (`discovery.tree` solves each). A joint is *wrong* if the
+two bodies it joins hold no limbs that meet, in whichever tree. Names count as
 wrong if a body's name is not that of most of its markers; limbs that are only numbered are not
 named.
 
@@ -173,7 +174,7 @@ def _functional(rows: Sequence[dict[str, Any]], peer: str) -> str:
         "is from the motion. *Halves* are the first and the second half of the trial, in which "
         "people make different movements (a hip 77° in one, 53° in the other); *eighths* every "
         "second eighth against the rest. Centres of knees across their axis; *along* it they are "
-        f"open. The peer is {peer or 'biobuddy, which is not installed here'}: SCoRE and SARA on "
+        f"open. The peer is {peer or 'biobuddy, left out here (`--without-peer`)'}: SCoRE and SARA on "
         "the same poses, in the same run. *SCoRE* compares its centre with the plain one of this "
         "project; the time ratio is that of these two.\n",
         "| joint | centre | halves | along | axis, halves | eighths | axis, eighths | peer, halves "
@@ -207,7 +208,8 @@ def _arm(arm: dict[str, Any]) -> str:
 def _hiding(rows: Sequence[dict[str, Any]]) -> str:
     lines = [
         "## Limbs that are hidden\n",
-        "A synthetic actor in free motion, one limb's markers hidden again and again. Errors of "
+        "A synthetic actor in free motion, one limb's markers hidden again and again; labels are "
+        "hidden too, bodies and joints are found in the recording with its gaps. Errors of "
         "the marker positions that are put in (`skeleton.fill_markers`), against a cubic spline "
         "through each marker by itself.\n",
         "| limb | hidden for | placed | median | 95 % | spline, median |",
