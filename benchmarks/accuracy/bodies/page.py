@@ -168,15 +168,16 @@ def _partitions(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def _functional(rows: Sequence[dict[str, Any]], peer: str) -> str:
+    whose = peer or "biobuddy, left out here (`--without-peer`)"
     lines = [
         "## Hips and knees of functional trials\n",
         "Skeleton, axes and centres with the layout's model but without its landmarks: everything "
         "is from the motion. *Halves* are the first and the second half of the trial, in which "
         "people make different movements (a hip 77° in one, 53° in the other); *eighths* every "
         "second eighth against the rest. Centres of knees across their axis; *along* it they are "
-        f"open. The peer is {peer or 'biobuddy, left out here (`--without-peer`)'}: SCoRE and SARA on "
-        "the same poses, in the same run. *SCoRE* compares its centre with the plain one of this "
-        "project; the time ratio is that of these two.\n",
+        f"open. The peer is {whose}: SCoRE and SARA on the same poses, in the same run. "
+        "*SCoRE* compares its centre with the plain one of this project; the time ratio is the "
+        "peer's processor time over that of the plain one.\n",
         "| joint | centre | halves | along | axis, halves | eighths | axis, eighths | peer, halves "
         "| peer axis, halves | to the peer | SCoRE | axis to the peer | time ratio |",
         "|---|---|" + "---:|" * 11,
