@@ -174,19 +174,22 @@ def _functional(rows: Sequence[dict[str, Any]], peer: str) -> str:
         "Skeleton, axes and centres with the layout's model but without its landmarks: everything "
         "is from the motion. *Halves* are the first and the second half of the trial, in which "
         "people make different movements (a hip 77° in one, 53° in the other); *eighths* every "
-        "second eighth against the rest. Centres of knees across their axis; *along* it they are "
+        "second eighth against the rest. *Told* is the rms difference that the uncertainties in "
+        "`skeleton.json` lead to expect between the halves. Centres of knees across their axis; *along* it they are "
         f"open. The peer is {whose}: SCoRE and SARA on the same poses, in the same run. "
         "*SCoRE* compares its centre with the plain one of this project; the time ratio is the "
         "peer's processor time over that of the plain one.\n",
-        "| joint | centre | halves | along | axis, halves | eighths | axis, eighths | peer, halves "
+        "| joint | centre | halves | told | along | axis, halves | told | eighths | axis, eighths | peer, halves "
         "| peer axis, halves | to the peer | SCoRE | axis to the peer | time ratio |",
-        "|---|---|" + "---:|" * 11,
+        "|---|---|" + "---:|" * 13,
     ]
     for row in rows:
         lines.append(
             f"| {row['joint'].replace('_', ' ')} | {row['observability']} "
-            f"| {_n(row['halves_mm'], 'mm')} | {_n(row['along_mm'], 'mm')} "
-            f"| {_n(row['halves_deg'], '°')} | {_n(row['blocks_mm'], 'mm')} "
+            f"| {_n(row['halves_mm'], 'mm')} | {_n(row['told_mm'], 'mm')} "
+            f"| {_n(row['along_mm'], 'mm')} "
+            f"| {_n(row['halves_deg'], '°')} | {_n(row['told_deg'], '°')} "
+            f"| {_n(row['blocks_mm'], 'mm')} "
             f"| {_n(row['blocks_deg'], '°')} | {_n(row['peer_halves_mm'], 'mm')} "
             f"| {_n(row['peer_halves_deg'], '°')} | {_n(row['peer_mm'], 'mm')} "
             f"| {_n(row['score_mm'], 'mm')} | {_n(row['peer_deg'], '°')} "

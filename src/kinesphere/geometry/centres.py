@@ -68,6 +68,10 @@ def fit_centre(
     this the fit would flee to the axis (errors in variables; as in Sampson's distance the weight
     follows the centre).
 
+    Where it is known how much of either limb's markers goes with the joint (`Turning.skin`), the
+    steady centre alone counts, and that movement is fitted along: see
+    `kinesphere.geometry.skin.fit_through_skin`. Distances would bring skin back in.
+
     The expectation ``expected ± spread`` speaks where the motion does not. Residuals of similar
     poses are not independent (soft tissue), so frames count by the distinct poses they show.
 
@@ -83,9 +87,9 @@ def fit_centre(
         How many times larger errors are that the fit absorbs (skin that moves with the pose) than
         those it leaves as residuals.
     hinge : (3,), optional
-        Direction of the axis of a joint known to have only one. Where the motion knows the centre
-        least along it, too, the expectation holds ``tighter`` times tighter there: what residuals
-        tell about that direction is how they were spoilt.
+        Direction of the axis of a joint known to have only one. Where the motion turns about one
+        axis, or knows the centre least along it, too, the expectation holds ``tighter`` times
+        tighter there: what residuals tell about that direction is how they were spoilt.
     tighter
     rounds
         Most steps of the descent.
