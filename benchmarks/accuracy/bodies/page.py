@@ -181,7 +181,8 @@ def _functional(rows: Sequence[dict[str, Any]], peer: str) -> str:
         "*SCoRE* compares its centre with the plain one of this project; the time ratio is the "
         "peer's processor time over that of the plain one.\n",
         "| joint | centre | halves | told | along | axis, halves | told | eighths | axis, eighths "
-        "| peer, halves | peer axis, halves | to the peer | SCoRE | axis to the peer | time ratio |",
+        "| peer, halves | peer axis, halves | to the peer | SCoRE | axis to the peer "
+        "| time ratio |",
         "|---|---|" + "---:|" * 13,
     ]
     for row in rows:
