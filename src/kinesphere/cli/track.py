@@ -15,10 +15,10 @@ from kinesphere.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from kinesphere.markerless import TrackedMotion
     from kinesphere.pipeline.track import TrackedSolution
 
 STRIP = "overlays.jpg"
+VIDEO = "overlays.mp4"
 TABLE = "tracking.csv"
 
 
@@ -54,6 +54,12 @@ def track(
         str | None,
         typer.Option("--facing", metavar="WAY", help="As for 'kinesphere solve'."),
     ] = None,
+    video: Annotated[
+        bool,
+        typer.Option(
+            "--video/--no-video", help="Whether to make overlays.mp4; as long as the tracking."
+        ),
+    ] = True,
     assignments: SetOption = None,
     settings_file: SettingsOption = None,
     as_json: JsonOption = False,
@@ -61,8 +67,8 @@ def track(
     """Measure motion without markers, from several calibrated cameras.
 
     docs/markerless.md shows how a scene is written. The folder holds what 'kinesphere solve'
-    writes, the model drawn over every camera (overlays.jpg), and overlap and support of every
-    limb in every frame (tracking.csv).
+    writes, the model drawn over every camera (overlays.mp4, overlays.jpg), and overlap and support
+    of every limb in every frame (tracking.csv).
 
     Example: [bold]kinesphere track SCENE.toml -o squat[/bold]
     """
@@ -78,10 +84,11 @@ def track(
     from kinesphere.io.scene import read_scene
 
     opencv()  # says how to get it, before anything else needs it
+    from kinesphere.cli.describe_tracking import describe_tracking, show_tracking
     from kinesphere.pipeline.track import solve_scene
 
     settings = settings_from_options(assignments, settings_file)
-    check_solution_place(output, [REPORT, STRIP, TABLE])
+    check_solution_place(output, [REPORT, STRIP, VIDEO, TABLE])
     with progress_bar(quiet=as_json) as progress:
         scene = read_scene(file)
         found = solve_scene(
@@ -92,7 +99,7 @@ def track(
             settings=settings,
             progress=progress,
         )
-        report = write_tracked(found, output, progress)
+        report = write_tracked(found, output, video=video, progress=progress)
     solution = found.solution
     summary = {
         "file": str(file),
@@ -108,84 +115,28 @@ def track(
     stdout().print(f"\nReport: {report}", soft_wrap=True)
 
 
-def write_tracked(found: "TrackedSolution", output: Path, progress: Any = None) -> Path:
+def write_tracked(
+    found: "TrackedSolution", output: Path, *, video: bool = True, progress: Any = None
+) -> Path:
     """Write the solved folder with pictures, table and report; return where the report is."""
     from kinesphere.cli.files import REPORT
     from kinesphere.io import write_solution
     from kinesphere.io.images import encoded_image
     from kinesphere.report import report_html
-    from kinesphere.report.tracking import overlay_strip, tracking_section, tracking_table
+    from kinesphere.report.overlay_film import overlay_film
+    from kinesphere.report.strip import overlay_strip
+    from kinesphere.report.tracking import tracking_section, tracking_table
 
     strip, frames = overlay_strip(found.scene, found.tracked, progress=progress)
-    picture = encoded_image(strip)
-    section = tracking_section(found.scene, found.tracked, picture, frames)
-    write_solution(
-        found.solution,
-        output,
-        {
-            REPORT: report_html(found.solution, found.scene.name, section),
-            STRIP: picture,
-            TABLE: tracking_table(found.scene, found.tracked),
-        },
-    )
-    return output / REPORT
-
-
-def describe_tracking(tracked: "TrackedMotion", cameras: list[str]) -> dict[str, Any]:
-    """Return overlap by camera, and support and lost frames by limb."""
-    import numpy as np
-
-    def mean(values: Any) -> float:
-        known = values[np.isfinite(values)]
-        return float(known.mean()) if len(known) else float("nan")
-
-    def least(values: Any) -> float:
-        known = values[np.isfinite(values)]
-        return float(known.min()) if len(known) else float("nan")
-
-    return {
-        "n_frames": tracked.n_frames,
-        "n_solved": int(tracked.solved.sum()),
-        "overlap_mean": mean(tracked.overlap),
-        "cameras": [
-            {"name": name, "overlap_mean": mean(o), "overlap_least": least(o)}
-            for name, o in zip(cameras, tracked.overlap.T, strict=True)
-        ],
-        "limbs": [
-            {
-                "name": name,
-                "support_mean": mean(tracked.support[:, i]),
-                "support_least": least(tracked.support[:, i]),
-                "frames_lost": int(tracked.lost[:, i].sum()),
-            }
-            for i, name in enumerate(tracked.limb_names)
-        ],
-        "seconds": dict(tracked.seconds),
+    files: dict[str, str | bytes] = {
+        STRIP: encoded_image(strip),
+        TABLE: tracking_table(found.scene, found.tracked),
     }
-
-
-def show_tracking(found: dict[str, Any]) -> None:
-    """Print overlap by camera, and the limbs that were lost or hardly supported."""
-    from kinesphere.cli.console import print_table, print_title, stdout
-
-    console = stdout()
-    print_title(console, "Cameras", f"{found['n_solved']} of {found['n_frames']} frames solved")
-    rows = [
-        (c["name"], _share(c["overlap_mean"]), _share(c["overlap_least"])) for c in found["cameras"]
-    ]
-    print_table(console, ("camera", "overlap, mean", "least"), rows, "lrr")
-    print_title(console, "Limbs", "support: share of the visible rim that speaks for the pose")
-    limbs = [
-        (
-            limb["name"],
-            _share(limb["support_mean"]),
-            _share(limb["support_least"]),
-            str(limb["frames_lost"] or ""),
-        )
-        for limb in found["limbs"]
-    ]
-    print_table(console, ("limb", "support, mean", "least", "frames lost"), limbs, "lrrr")
-
-
-def _share(value: float) -> str:
-    return "–" if value != value else f"{value:.2f}"
+    if video:
+        files[VIDEO] = overlay_film(found.scene, found.tracked, progress)
+    section = tracking_section(
+        found.scene, found.tracked, encoded_image(strip), frames, VIDEO if video else None
+    )
+    files[REPORT] = report_html(found.solution, found.scene.name, section)
+    write_solution(found.solution, output, files)
+    return output / REPORT

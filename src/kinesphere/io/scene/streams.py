@@ -10,8 +10,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from kinesphere.data import Image
-from kinesphere.errors import MissingExtra, UnreadableFile
+from kinesphere.errors import UnreadableFile
 from kinesphere.io.images import SUFFIXES, read_image
+from kinesphere.io.video import pyav
 
 _LARGEST_HOLE = 1000
 """Files that count farther apart than this are numbered by something else than frames."""
@@ -163,7 +164,7 @@ class Video:
             yield None
 
     def _decoded(self) -> Iterator[tuple[int, Any]]:
-        av = _pyav()
+        av = pyav()
         with av.open(str(self.path)) as container:
             stream = container.streams.video[0]
             stream.thread_type = "AUTO"
@@ -189,7 +190,7 @@ def open_video(path: Path) -> Video:
     UnreadableFile
         If the file is missing, empty, no video, or its first frame cannot be decoded.
     """
-    av = _pyav()
+    av = pyav()
     if not path.is_file():
         what = "is no file" if path.exists() else "there is no such file"
         raise UnreadableFile(f"{path}: {what}")
@@ -255,14 +256,3 @@ def note(notes: list[str], sentence: str) -> None:
     """Add a sentence that is not there yet."""
     if sentence not in notes:
         notes.append(sentence)
-
-
-def _pyav() -> Any:
-    try:
-        import av
-    except ImportError:
-        raise MissingExtra(
-            "videos need PyAV, which is not installed: pip install 'kinesphere[markerless]'"
-        ) from None
-    av.logging.set_level(None)  # FFmpeg's own words go to stderr otherwise
-    return av
