@@ -42,7 +42,6 @@ def describe_tracking(tracked: TrackedMotion, cameras: list[str]) -> dict[str, A
 
 def show_tracking(found: dict[str, Any]) -> None:
     """Print overlap by camera, and the limbs that were lost or hardly supported."""
-
     console = stdout()
     print_title(console, "Cameras", f"{found['n_solved']} of {found['n_frames']} frames solved")
     rows = [

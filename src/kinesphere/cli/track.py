@@ -1,5 +1,8 @@
 """``kinesphere track``: cameras and images in, the usual solved folder out."""
 
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,6 +16,7 @@ from kinesphere.cli.options import (
     calibration_from_text,
     settings_from_options,
 )
+from kinesphere.errors import Interrupted
 
 if TYPE_CHECKING:
     from kinesphere.pipeline.track import TrackedSolution
@@ -43,11 +47,12 @@ def track(
         ),
     ] = None,
     calibration_from: Annotated[
-        Path | None,
+        list[Path] | None,
         typer.Option(
             "--calibration-from",
             metavar="DIR",
-            help="Take axes and rest positions from a solved recording of the same person.",
+            help="Take axes and rest positions from a solved recording of the same person, by "
+            "markers or without; may be given again.",
         ),
     ] = None,
     facing: Annotated[
@@ -72,7 +77,7 @@ def track(
 
     Example: [bold]kinesphere track SCENE.toml -o squat[/bold]
     """
-    if calibration is not None and calibration_from is not None:
+    if calibration is not None and calibration_from:
         raise BadArgument("--calibration and --calibration-from exclude each other; give one")
     span = calibration_from_text(calibration)
 
@@ -89,15 +94,16 @@ def track(
 
     settings = settings_from_options(assignments, settings_file)
     check_solution_place(output, [REPORT, STRIP, VIDEO, TABLE])
-    with progress_bar(quiet=as_json) as progress:
+    with progress_bar(quiet=as_json) as progress, stopped_as_by_hand():
         scene = read_scene(file)
         found = solve_scene(
             scene,
             calibration=span,
-            calibration_from=read_solved(calibration_from) if calibration_from else None,
+            calibration_from=[read_solved(folder) for folder in calibration_from or ()],
             facing=facing,  # type: ignore[arg-type]  # normalize names what it knows
             settings=settings,
             progress=progress,
+            notice=progress.say,
         )
         report = write_tracked(found, output, video=video, progress=progress)
     solution = found.solution
@@ -109,10 +115,24 @@ def track(
     }
     if as_json:
         print_json(summary)
-        return
-    show_solution(summary, solution)
-    show_tracking(summary["tracking"])
-    stdout().print(f"\nReport: {report}", soft_wrap=True)
+    else:
+        show_solution(summary, solution)
+        show_tracking(summary["tracking"])
+        stdout().print(f"\nReport: {report}", soft_wrap=True)
+    if (reached := found.tracked.n_reached) is not None:
+        raise Interrupted(
+            f"interrupted after {reached} of {scene.n_frames} frames; they are kept in {output}"
+        )
+
+
+@contextmanager
+def stopped_as_by_hand() -> Iterator[None]:
+    """Let a request to terminate, as a cluster sends it, do what Ctrl-C does."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def write_tracked(
@@ -133,9 +153,10 @@ def write_tracked(
         TABLE: tracking_table(found.scene, found.tracked),
     }
     if video:
-        files[VIDEO] = overlay_film(found.scene, found.tracked, progress)
+        with suppress(KeyboardInterrupt):  # who will not wait for it keeps the rest
+            files[VIDEO] = overlay_film(found.scene, found.tracked, progress)
     section = tracking_section(
-        found.scene, found.tracked, encoded_image(strip), frames, VIDEO if video else None
+        found.scene, found.tracked, encoded_image(strip), frames, VIDEO if VIDEO in files else None
     )
     files[REPORT] = report_html(found.solution, found.scene.name, section)
     write_solution(found.solution, output, files)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array, Frame, History, Mask, Scene
+from kinesphere.data import Array, Frame, History, Mask, Scene, Surface
 from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.pose import posed
@@ -75,17 +75,22 @@ class Account:
     def warnings(self) -> tuple[str, ...]:
         """Return what a person should know, a sentence each."""
         said = []
+        if self.n_entered < self.scene.n_frames:
+            said.append(
+                f"tracking was interrupted after {self.n_entered} of {self.scene.n_frames} frames; "
+                "the others have no pose"
+            )
         empty = int((self._entered & np.isnan(self._parameters).any(axis=1)).sum())
         if empty:
             said.append(f"in {empty} of {len(self._entered)} frames no camera has an image")
-        share = self._lost.mean(axis=0)
+        share = self._lost[self._entered].mean(axis=0)
         for name, lost in zip(self.fitter.body.house_limbs, share, strict=True):
             if lost > 0.02:
                 said.append(f"{name} is held lost in {lost:.0%} of the frames")
         return tuple(said)
 
-    def tracked(self, history: History) -> TrackedMotion:
-        """Return all of it."""
+    def tracked(self, history: History, surface: Surface | None = None) -> TrackedMotion:
+        """Return all of it, with the surface that the body was made of."""
         body = self.fitter.body
         house = {name: i for i, name in enumerate(body.house_limbs)}
         parents = []
@@ -111,6 +116,8 @@ class Account:
             rate=self.scene.rate,
             seconds=dict(self.seconds),
             history=history,
+            surface=surface,
+            n_reached=self.n_entered if self.n_entered < self.scene.n_frames else None,
         )
 
 

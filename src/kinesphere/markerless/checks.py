@@ -17,6 +17,10 @@ AGREE = 0.008
 """Of the image's diagonal: cameras whose silhouettes contradict each other by more are badly
 calibrated. A camera turned by half a degree gives 0.006, perfect ones 0.001, a good calibration of
 real footage 0.005."""
+CHECKS = "scene checks"
+"""What the step is called."""
+CULPRIT = "wrong_camera"
+"""Where the step names the camera that does not fit the others."""
 _MENDS = 0.4
 """Share of the disagreement that a shift in time must mend to be believed."""
 _FRAMES = 9
@@ -72,7 +76,10 @@ def check_scene(scene: Scene) -> Step:
                 f"offset = {offset + late.frames} in its [[camera]]"
             )
     if apart > AGREE * diagonal:
-        warnings.append(_culprit(scene, seen, apart))
+        wrong = find_culprit(seen)
+        warnings.append(_contradiction(scene, wrong, apart))
+        if wrong is not None:
+            found[CULPRIT] = scene.cameras[wrong].name
     return _step(found, *warnings)
 
 
@@ -89,9 +96,9 @@ def silhouettes(scene: Scene, frame: Frame) -> tuple[Mask | None, ...]:
     return tuple(found)
 
 
-def _culprit(scene: Scene, seen: list[list[Sight | None]], apart: float) -> str:
+def _contradiction(scene: Scene, wrong: int | None, apart: float) -> str:
     head = f"the cameras' silhouettes contradict each other by {apart:.0f} px: "
-    if (wrong := find_culprit(seen)) is not None:
+    if wrong is not None:
         return (
             head + f"{scene.cameras[wrong].name} does not fit the others; its calibration, its "
             "offset or the way its images were cropped is wrong"
@@ -102,4 +109,4 @@ def _culprit(scene: Scene, seen: list[list[Sight | None]], apart: float) -> str:
 
 
 def _step(findings: dict[str, object], *warnings: str) -> Step:
-    return Step("scene checks", findings=findings, warnings=warnings, version=__version__)  # type: ignore[arg-type]
+    return Step(CHECKS, findings=findings, warnings=warnings, version=__version__)  # type: ignore[arg-type]

@@ -28,6 +28,7 @@ from kinesphere.io.scene.streams import ImageFolder, Stream, open_stream
 from kinesphere.io.scene.world import camera_in_world, settle_unit, settle_up
 from kinesphere.io.text import read_text
 
+_FEWEST = 2
 _SAME_RATE = 0.005
 """Cameras whose rates differ by less run at one rate: 59.94 and 60 Hz do."""
 _ANGLES_END = "_m"
@@ -63,6 +64,8 @@ def read_scene(path: str | Path) -> Scene:
     named = [camera.name for camera in spec.camera]
     if twice := sorted({name for name in named if named.count(name) > 1}):
         raise BadScene(f"{path}: camera {', '.join(twice)} is there twice")
+    if len(named) < _FEWEST:
+        raise BadScene(f"{path}: the scene has {len(named)} camera; two see how far away things are")
     if missing := [name for name in named if name not in known]:
         raise BadScene(
             f"{path}: camera {', '.join(missing)} is not calibrated; {where} knows "
