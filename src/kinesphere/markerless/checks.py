@@ -5,7 +5,6 @@ import numpy as np
 from kinesphere import __version__
 from kinesphere.data import Frame, Mask, Scene, Step
 from kinesphere.markerless.consistency import (
-    Sight,
     disagreement,
     find_culprit,
     find_lateness,

@@ -3,7 +3,8 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from kinesphere.data import Scene, Solution, Surface, bundled_body
+from kinesphere import __version__
+from kinesphere.data import Scene, Solution, Step, Surface, bundled_body
 from kinesphere.errors import BadScene
 from kinesphere.markerless import (
     TrackedMotion,
@@ -87,7 +88,7 @@ def solve_scene(
     with clock.stage("track"):
         tracked = track(scene, body_of(scene), settings.tracking, progress)
         step = tracking_step(tracked, tuple(camera.name for camera in scene.cameras))
-        tracked = replace(tracked, history=(*tracked.history, step))
+        tracked = replace(tracked, history=(*tracked.history, *_reading(scene), step))
         measured = with_first_frame(motion_from_tracked(tracked), scene)
     with clock.stage("normalization"):
         motion = normalized_at_any_rate(measured, settings.normalization, facing)
@@ -109,6 +110,13 @@ def solve_scene(
         surface=surface,
     )
     return TrackedSolution(solution, tracked, scene)
+
+
+def _reading(scene: Scene) -> tuple[Step, ...]:
+    """Return a step that tells of images that could not be read; none where all could."""
+    known = {warning for step in scene.history for warning in step.warnings}
+    new = tuple(note for note in scene.notes if note not in known)
+    return (Step("reading images", warnings=new, version=__version__),) if new else ()
 
 
 def body_of(scene: Scene) -> Surface:

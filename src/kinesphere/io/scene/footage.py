@@ -7,7 +7,8 @@ import numpy as np
 
 from kinesphere.data import Camera, Frame, Image, Mask
 from kinesphere.errors import UnreadableFile
-from kinesphere.io.scene.streams import ImageFolder, Stream, note
+from kinesphere.io.scene.image_folder import ImageFolder
+from kinesphere.io.scene.streams import Stream
 
 _HALF = 127
 
@@ -24,8 +25,14 @@ class RecordedFootage:
     mask_offsets: tuple[int, ...]
     references: tuple[Stream | None, ...]
     reference_offsets: tuple[int, ...]
-    notes: list[str] = field(default_factory=list)
-    """What went wrong while reading, a sentence each."""
+    odd_sizes: dict[int, str] = field(default_factory=dict)
+    """Camera → what was said of images that have another size than its first."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What went wrong while reading so far, a sentence each."""
+        streams = (s for s in (*self.streams, *self.masks, *self.references) if s is not None)
+        return (*self.odd_sizes.values(), *(note for s in streams for note in s.notes))
 
     def frames(self, start: int, stop: int, step: int = 1) -> Iterator[Frame]:
         """Yield frames ``start``, ``start + step``, … before ``stop``."""
@@ -52,16 +59,13 @@ class RecordedFootage:
                     tuple(self._mask(c, i, index) for c, i in enumerate(shapes)),
                     tuple(self._mask(c, i, index) for c, i in enumerate(compared)),
                 )
-        for stream in (*self.streams, *self.masks):
-            for sentence in () if stream is None else stream.notes:
-                note(self.notes, sentence)
 
     def _fitting(self, c: int, image: Image | None, index: int) -> Image | None:
         camera = self.cameras[c]
         if image is None or image.shape[:2] == (camera.height, camera.width):
             return image
-        note(
-            self.notes,
+        self.odd_sizes.setdefault(
+            c,
             f"{camera.name}: from frame {index} images are {image.shape[1]} × {image.shape[0]} "
             f"pixels instead of {camera.width} × {camera.height}; they are left out",
         )
