@@ -5,11 +5,13 @@ import numpy as np
 from kinesphere import __version__
 from kinesphere.data import Frame, Mask, Scene, Step
 from kinesphere.markerless.consistency import (
+    Sight,
     disagreement,
     find_culprit,
     find_lateness,
     sights,
 )
+from kinesphere.markerless.mixups import find_swap, person_size
 from kinesphere.markerless.silhouettes import largest_piece, plate_difference
 
 AGREE = 0.008
@@ -22,6 +24,12 @@ CULPRIT = "wrong_camera"
 """Where the step names the camera that does not fit the others."""
 _MENDS = 0.4
 """Share of the disagreement that a shift in time must mend to be believed."""
+_UNDONE = 0.6
+"""The same of an exchange of two cameras: 0.9 where two were exchanged, 0.0 where none was."""
+_SIZES = (0.7, 3.2)
+"""m; a child and a tall person with arms stretched out and the legs apart lie between."""
+_SPECK = 1e-3
+"""Share of the image below which what differs from the plate is nobody."""
 _FRAMES = 9
 _WINDOW = 18
 _MOST = 5
@@ -33,7 +41,6 @@ def check_scene(scene: Scene) -> Step:
     Needs masks or plates in two cameras at least; without them the step says that nothing was
     checked before tracking. Never stops: a bad mask may look like a bad calibration.
     """
-    first = scene.start.frame
     spread = np.linspace(0, scene.n_frames - 1, _FRAMES).astype(int)
     able = sum(p is not None for p in scene.plates) if not scene.has_masks else len(scene.cameras)
     if able < 2:
@@ -60,20 +67,24 @@ def check_scene(scene: Scene) -> Step:
         for c, camera in enumerate(scene.cameras)
         if all(row[c] is None for row in seen)
     ]
-    if scene.n_frames > 2 * _MOST:
-        begin = min(first, max(0, scene.n_frames - _WINDOW))
-        window = [silhouettes(scene, f) for f in scene.frames(begin, begin + _WINDOW)]
-        late = find_lateness(sights(scene.cameras, window), min(_MOST, (len(window) - 1) // 2))
-        if late.frames != 0 and late.mended > _MENDS:
-            name, n = scene.cameras[late.camera].name, abs(late.frames)
-            later = "later" if late.frames > 0 else "earlier"
-            found |= {"late_camera": name, "late_frames": late.frames, "mended": late.mended}
-            offset = scene.offsets[late.camera]
-            warnings.append(
-                f"{name} seems to show everything {n} {'frame' if n == 1 else 'frames'} {later} "
-                f"than the other cameras ({late.mended:.0%} of their disagreement would go); try "
-                f"offset = {offset + late.frames} in its [[camera]]"
-            )
+    found["person_m"] = size = round(person_size(scene.cameras, some), 2)
+    if not _SIZES[0] <= size <= _SIZES[1]:
+        warnings.append(
+            f"the person seems {size:.2g} m large; the calibration's unit is wrong, or what moves "
+            "is no person"
+        )
+    swap = find_swap(scene.cameras, some)
+    if swap is not None and swap.mended > _UNDONE:
+        one, other = scene.cameras[swap.first].name, scene.cameras[swap.second].name
+        found |= {"swapped": [one, other], "mended": round(swap.mended, 2)}
+        warnings.append(
+            f"the images of {one} and {other} seem to be exchanged: the other way round "
+            f"{swap.mended:.0%} of the cameras' disagreement would go"
+        )
+        return _step(found, *warnings)  # whatever else seems wrong comes of it
+    told, warning = _lateness(scene)
+    found |= told
+    warnings += warning
     if apart > AGREE * diagonal:
         wrong = find_culprit(seen)
         warnings.append(_contradiction(scene, wrong, apart))
@@ -89,10 +100,45 @@ def silhouettes(scene: Scene, frame: Frame) -> tuple[Mask | None, ...]:
         if mask is not None:
             found.append(np.asarray(largest_piece(mask.astype(np.uint8) * 255) > 0))
         elif image is not None and plate is not None:
-            found.append(np.asarray(plate_difference(image, plate) > 0))
+            differs = np.asarray(plate_difference(image, plate) > 0)
+            found.append(differs if differs.mean() > _SPECK else None)
         else:
             found.append(None)
     return tuple(found)
+
+
+def _lateness(scene: Scene) -> tuple[dict[str, object], list[str]]:
+    """Return what is found and said of a camera whose clock seems off; nothing where none is."""
+    if scene.n_frames <= 2 * _MOST:
+        return {}, []
+    begin = min(scene.start.frame, max(0, scene.n_frames - _WINDOW))
+    window = [silhouettes(scene, f) for f in scene.frames(begin, begin + _WINDOW)]
+    seen = _while_all_see(sights(scene.cameras, window))
+    if len(seen) < _MOST + 2:
+        return {}, []
+    late = find_lateness(seen, min(_MOST, (len(seen) - 1) // 2))
+    if late.frames == 0 or late.mended <= _MENDS:
+        return {}, []
+    name, n = scene.cameras[late.camera].name, abs(late.frames)
+    later = "later" if late.frames > 0 else "earlier"
+    offset = scene.offsets[late.camera] + late.frames
+    return {"late_camera": name, "late_frames": late.frames, "mended": late.mended}, [
+        f"{name} seems to show everything {n} {'frame' if n == 1 else 'frames'} {later} than the "
+        f"other cameras ({late.mended:.0%} of their disagreement would go); try offset = {offset} "
+        "in its [[camera]]"
+    ]
+
+
+def _while_all_see(seen: list[list[Sight | None]]) -> list[list[Sight | None]]:
+    """Return the longest run of frames in which every camera that ever sees somebody does."""
+    able = [any(row[c] is not None for row in seen) for c in range(len(seen[0]))]
+    best: list[list[Sight | None]] = []
+    run: list[list[Sight | None]] = []
+    for row in seen:
+        whole = all(sight is not None for sight, sees in zip(row, able, strict=True) if sees)
+        run = [*run, row] if whole else []
+        best = max(best, run, key=len)
+    return best
 
 
 def _contradiction(scene: Scene, wrong: int | None, apart: float) -> str:

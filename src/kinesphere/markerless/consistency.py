@@ -47,7 +47,7 @@ def sights(
     cameras: Sequence[Camera], frames: Sequence[tuple[Mask | None, ...]]
 ) -> list[list[Sight | None]]:
     """Return, for each frame, what each camera knows; None where it has no silhouette."""
-    middle = _middle(cameras, frames)
+    middle = middle_of(cameras, frames)
     found: list[list[Sight | None]] = []
     for masks in frames:
         row: list[Sight | None] = []
@@ -122,7 +122,7 @@ def find_culprit(seen: Sequence[Sequence[Sight | None]]) -> int | None:
     n = len(seen[0])
     if n < 3:
         return None  # of two, either may be wrong
-    left = np.array([_cost(distances(seen, without=c)) for c in range(n)])
+    left = np.array([cost(distances(seen, without=c)) for c in range(n)])
     order = np.argsort(left)
     best, second = left[order[0]], left[order[1]]
     return int(order[0]) if best < _CLEARLY * second else None
@@ -149,19 +149,19 @@ def find_lateness(seen: Sequence[Sequence[Sight | None]], most: int) -> Lateness
     most
         Largest lateness looked for, in frames.
     """
-    unmoved = _cost(distances(seen, margin=most))
+    unmoved = cost(distances(seen, margin=most))
     best = Lateness(0, 0, 0.0)
     if not unmoved > 0:
         return best
     for camera in range(len(seen[0])):
         for shift in sorted(range(-most, most + 1), key=abs):
-            cost = _cost(distances(seen, late=(camera, shift), margin=most))
-            if cost < unmoved * (1 - best.mended):
-                best = Lateness(camera, shift, 1 - cost / unmoved)
+            moved = cost(distances(seen, late=(camera, shift), margin=most))
+            if moved < unmoved * (1 - best.mended):
+                best = Lateness(camera, shift, 1 - moved / unmoved)
     return best
 
 
-def _cost(far: Array) -> float:
+def cost(far: Array) -> float:
     """Return the mean distance, lines that are far off counted as `_FAR`."""
     return float(np.minimum(far, _FAR).mean()) if len(far) else float("nan")
 
@@ -198,7 +198,7 @@ def _rim(mask: Mask) -> Array:
     return np.stack([columns[chosen], rows[chosen]], axis=-1).astype(np.float64)
 
 
-def _middle(cameras: Sequence[Camera], frames: Sequence[tuple[Mask | None, ...]]) -> Array:
+def middle_of(cameras: Sequence[Camera], frames: Sequence[tuple[Mask | None, ...]]) -> Array:
     """Return the point nearest to the lines of sight through the silhouettes' centroids, (3,) m."""
     a, b = np.zeros((3, 3)), np.zeros(3)
     for masks in frames:
