@@ -33,6 +33,8 @@ _SPECK = 1e-3
 _FRAMES = 9
 _WINDOW = 18
 _MOST = 5
+_LEAST = 3
+"""Frames by which a camera must be able to be late before it is asked."""
 
 
 def check_scene(scene: Scene) -> Step:
@@ -109,23 +111,32 @@ def silhouettes(scene: Scene, frame: Frame) -> tuple[Mask | None, ...]:
 
 def _lateness(scene: Scene) -> tuple[dict[str, object], list[str]]:
     """Return what is found and said of a camera whose clock seems off; nothing where none is."""
-    if scene.n_frames <= 2 * _MOST:
-        return {}, []
     begin = min(scene.start.frame, max(0, scene.n_frames - _WINDOW))
     window = [silhouettes(scene, f) for f in scene.frames(begin, begin + _WINDOW)]
     seen = _while_all_see(sights(scene.cameras, window))
-    if len(seen) < _MOST + 2:
+    if (most := min(_MOST, (len(seen) - 1) // 2)) < _LEAST:
         return {}, []
-    late = find_lateness(seen, min(_MOST, (len(seen) - 1) // 2))
-    if late.frames == 0 or late.mended <= _MENDS:
+    late = [late for late in find_lateness(seen, most) if late.mended > _MENDS]
+    if not late:
         return {}, []
-    name, n = scene.cameras[late.camera].name, abs(late.frames)
-    later = "later" if late.frames > 0 else "earlier"
-    offset = scene.offsets[late.camera] + late.frames
-    return {"late_camera": name, "late_frames": late.frames, "mended": late.mended}, [
-        f"{name} seems to show everything {n} {'frame' if n == 1 else 'frames'} {later} than the "
-        f"other cameras ({late.mended:.0%} of their disagreement would go); try offset = {offset} "
-        "in its [[camera]]"
+    names = [scene.cameras[each.camera].name for each in late]
+    told: dict[str, object] = {
+        "late_camera": names[0],
+        "late_frames": late[0].frames,
+        "mended": late[0].mended,
+    }
+    shifts = " or ".join(
+        f"{name} {abs(each.frames)} {'frame' if abs(each.frames) == 1 else 'frames'} "
+        f"{'later' if each.frames > 0 else 'earlier'}"
+        for name, each in zip(names, late, strict=True)
+    )
+    offsets = " or ".join(
+        f"offset = {scene.offsets[each.camera] + each.frames} in the [[camera]] of {name}"
+        for name, each in zip(names, late, strict=True)
+    )
+    return told, [
+        f"one camera seems to be out of time, showing everything {shifts} than the others "
+        f"({late[0].mended:.0%} of their disagreement would go): try {offsets}"
     ]
 
 

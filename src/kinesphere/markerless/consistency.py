@@ -28,6 +28,8 @@ _FAR = 8.0
 """px; farther off is not worse, for a comparison of shifts."""
 _CLEARLY = 0.5
 """Without the camera that is wrong, the others contradict each other by so much less."""
+_AS_GOOD = 0.1
+"""Shares of the disagreement that differ by less are no choice between two cameras."""
 _SHARE = 0.9
 """Quantile over lines: a hand that one mask lacks must not speak for a camera."""
 
@@ -130,7 +132,7 @@ def find_culprit(seen: Sequence[Sequence[Sight | None]]) -> int | None:
 
 @dataclass(frozen=True)
 class Lateness:
-    """The camera that, shown so many frames later, agrees best with the others."""
+    """A camera that, shown so many frames later, agrees better with the others."""
 
     camera: int
     frames: int
@@ -139,8 +141,11 @@ class Lateness:
     """The share of the cameras' disagreement that taking it so mends."""
 
 
-def find_lateness(seen: Sequence[Sequence[Sight | None]], most: int) -> Lateness:
-    """Return which camera's time seems off, and by how much.
+def find_lateness(seen: Sequence[Sequence[Sight | None]], most: int) -> list[Lateness]:
+    """Return the cameras whose time may be off, and by how much; the likeliest first.
+
+    Several where silhouettes cannot tell: of two opposite cameras, one that comes earlier is as
+    good as the other that comes later.
 
     Parameters
     ----------
@@ -150,15 +155,17 @@ def find_lateness(seen: Sequence[Sequence[Sight | None]], most: int) -> Lateness
         Largest lateness looked for, in frames.
     """
     unmoved = cost(distances(seen, margin=most))
-    best = Lateness(0, 0, 0.0)
     if not unmoved > 0:
-        return best
+        return []
+    found = []
     for camera in range(len(seen[0])):
-        for shift in sorted(range(-most, most + 1), key=abs):
-            moved = cost(distances(seen, late=(camera, shift), margin=most))
-            if moved < unmoved * (1 - best.mended):
-                best = Lateness(camera, shift, 1 - moved / unmoved)
-    return best
+        shifts = sorted((s for s in range(-most, most + 1) if s), key=abs)
+        costs = [cost(distances(seen, late=(camera, s), margin=most)) for s in shifts]
+        best = int(np.argmin(costs))
+        if costs[best] < unmoved:
+            found.append(Lateness(camera, shifts[best], 1 - costs[best] / unmoved))
+    found.sort(key=lambda late: -late.mended)
+    return [late for late in found if late.mended > found[0].mended - _AS_GOOD]
 
 
 def cost(far: Array) -> float:
