@@ -152,11 +152,18 @@ def write_tracked(
         STRIP: encoded_image(strip),
         TABLE: tracking_table(found.scene, found.tracked),
     }
+    poster = b""
     if video:
         with suppress(KeyboardInterrupt):  # who will not wait for it keeps the rest
-            files[VIDEO] = overlay_film(found.scene, found.tracked, progress)
+            files[VIDEO], first = overlay_film(found.scene, found.tracked, progress)
+            poster = encoded_image(first)
     section = tracking_section(
-        found.scene, found.tracked, encoded_image(strip), frames, VIDEO if VIDEO in files else None
+        found.scene,
+        found.tracked,
+        encoded_image(strip),
+        frames,
+        VIDEO if VIDEO in files else None,
+        poster,
     )
     files[REPORT] = report_html(found.solution, found.scene.name, section)
     write_solution(found.solution, output, files)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Frame, History, Mask, Scene, Surface
+from kinesphere.data.joint_names import joint_above
 from kinesphere.data.spans import frame_spans
 from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.kernels.contour import NOWHERE
@@ -125,7 +126,7 @@ class Account:
             parameters=self._parameters,
             limb_names=body.house_limbs,
             limb_parents=tuple(parents),
-            joint_names=tuple(_joint_name(name) for name in body.house_limbs[1:]),
+            joint_names=tuple(joint_above(name) for name in body.house_limbs[1:]),
             rotations=self._rotations,
             origins=self._origins,
             ends=(body.ends - body.chain.centres)[self._own],
@@ -138,22 +139,3 @@ class Account:
             surface=surface,
             n_reached=self.n_entered if self.n_entered < self.scene.n_frames else None,
         )
-
-
-_JOINTS = {
-    "trunk": "lumbar",
-    "head": "neck",
-    "upper_arm": "shoulder",
-    "forearm": "elbow",
-    "hand": "wrist",
-    "thigh": "hip",
-    "shank": "knee",
-    "foot": "ankle",
-}
-
-
-def _joint_name(limb: str) -> str:
-    for side in ("left_", "right_"):
-        if limb.startswith(side):
-            return side + _JOINTS.get(limb.removeprefix(side), limb.removeprefix(side))
-    return _JOINTS.get(limb, limb)

@@ -27,11 +27,18 @@ def overlay_film(
     scene: Scene,
     tracked: TrackedMotion,
     progress: Callable[[str, int, int], None] | None = None,
-) -> bytes:
+) -> tuple[bytes, Image]:
     """Return an MP4 of all cameras side by side, the model over them, as fast as it happened.
 
     Each camera's panel shows the same part of its image throughout, above it the camera's name and
     overlap; below all are frame, time and the limbs held lost.
+
+    Returns
+    -------
+    video
+        The file's bytes.
+    poster
+        Its first picture.
 
     Raises
     ------
@@ -42,6 +49,7 @@ def overlay_film(
     sheet = sheet_for(panels_for(scene, tracked, range(tracked.n_frames), math.inf))
     names = [camera.name for camera in scene.cameras]
     target = io.BytesIO()
+    poster: Image | None = None
     with VideoWriter(target, scene.rate / every, _QUALITY) as video:
         for frame in scene.frames(0, None, every):
             if progress is not None:
@@ -51,8 +59,11 @@ def overlay_film(
                 for name, share in zip(names, tracked.overlap[frame.index], strict=True)
             ]
             pictures = drawn_panels(frame, list(sheet.panels), tracked)
-            video.add(sheet.arranged(pictures, titles, _words(scene, tracked, frame.index)))
-    return target.getvalue()
+            picture = sheet.arranged(pictures, titles, _words(scene, tracked, frame.index))
+            poster = picture if poster is None else poster
+            video.add(picture)
+    assert poster is not None  # a scene has a frame
+    return target.getvalue(), poster
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ def tracking_section(
     strip: bytes,
     frames: list[int],
     video: str | None = None,
+    poster: bytes = b"",
 ) -> Markup:
     """Return the HTML of the section.
 
@@ -29,12 +30,15 @@ def tracking_section(
         Which frames are its rows.
     video
         Name of the file beside the report that shows all frames.
+    poster
+        A JPEG of its first one.
     """
     names = [camera.name for camera in scene.cameras]
     template = environment().from_string(asset("tracking.html.j2"))
     return Markup(
         template.render(
             video=video,
+            poster=base64.b64encode(poster).decode(),
             strip=base64.b64encode(strip).decode(),
             frames=", ".join(str(f + scene.first_frame + 1) for f in frames),
             cameras=[
