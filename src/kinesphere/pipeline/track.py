@@ -14,6 +14,7 @@ from kinesphere.markerless import (
     with_first_frame,
 )
 from kinesphere.markerless.checks import check_scene
+from kinesphere.markerless.rig import standing_as_bundled
 from kinesphere.markerless.tracker import track
 from kinesphere.normalization import Facing
 from kinesphere.pipeline.clock import Clock, Progress
@@ -128,7 +129,7 @@ def body_of(scene: Scene) -> Surface:
         If no bundled body has that name.
     """
     if scene.surface is not None:
-        return scene.surface
+        return standing_as_bundled(scene.surface)
     mesh = scene.body.mesh
     if mesh not in MESHES:
         raise BadScene(f"no bundled body is called {mesh!r}; known are {', '.join(MESHES)}")
