@@ -51,10 +51,16 @@ def test_a_scene_becomes_a_solved_folder(call, scene, film, tmp_path):
         true = film.motion.joint_centres[:, names.index(limb)]
         assert np.linalg.norm(found - true, axis=1).max() < 0.05
     assert read_image(out / "overlays.jpg").shape[0] > 100
+    import av
+
+    with av.open(str(out / "overlays.mp4")) as container:
+        assert len(list(container.decode(video=0))) == 5
     assert len((out / "tracking.csv").read_text().splitlines()) == 6
     page = (out / "report.html").read_text()
     assert "Small film" in page
     assert "data:image/jpeg;base64," in page
+    assert '<video controls loop muted playsinline preload="metadata" src="overlays.mp4"' in page
+    assert solution.surface is not None
 
 
 def test_a_scene_that_does_not_fit_is_one_line(call, scene, tmp_path):

@@ -9,12 +9,8 @@ import pytest
 
 pytest.importorskip("cv2")
 
-from kinesphere.report.tracking import (
-    overlay_strip,
-    shown_frames,
-    tracking_section,
-    tracking_table,
-)
+from kinesphere.report.strip import overlay_strip, shown_frames
+from kinesphere.report.tracking import tracking_section, tracking_table
 from kinesphere.synthetic.film import make_film
 
 pytestmark = pytest.mark.slow  # rendering takes long in plain Python

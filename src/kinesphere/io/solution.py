@@ -44,7 +44,7 @@ FILES = (
 """What ``write_solution`` writes by itself."""
 ISB_ANGLES = "isb_angles.csv"
 """Written where joints have names; older folders are whole without it."""
-_OF_CAMERAS = ("overlays.jpg", "tracking.csv")
+_OF_CAMERAS = ("overlays.jpg", "overlays.mp4", "tracking.csv")
 _LEFT_BEHIND = (".DS_Store", "Thumbs.db", "desktop.ini")
 _BESIDE = (ISB_ANGLES, "report.html", *_OF_CAMERAS, *_LEFT_BEHIND)
 """What may stand beside them: reports, pictures, and what file managers leave behind."""

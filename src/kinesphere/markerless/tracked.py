@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array, History, Mask
+from kinesphere.data import Array, History, Mask, Surface
 
 
 class PosedBody(Protocol):
@@ -60,6 +60,10 @@ class TrackedMotion:
     seconds: dict[str, float] = field(default_factory=dict)
     """Module (decoding, segmentation, rasterizing, …) → time spent."""
     history: History = ()
+    surface: Surface | None = None
+    """The body in the bind pose, fitted to the person."""
+    n_reached: int | None = None
+    """How many frames were looked at before tracking was interrupted; None where all were."""
 
     @property
     def n_frames(self) -> int:
