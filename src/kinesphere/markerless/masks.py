@@ -37,6 +37,11 @@ class Masks:
         mask_samples_kernel(rim.pixels, rim.normals, use, level, float(scale), float(scale), out)
         return out
 
+    def ratios(self, parts: Parts, reach: int) -> NDArray[np.float32]:
+        """Return how much likelier each pixel is the person's."""
+        p = 0.02 + 0.96 * self._levels[1].astype(np.float32) / 255
+        return np.asarray(np.log(p / (1 - p)), dtype=np.float32)
+
     def learn(self, rim: Rim, parts: Parts, rate: float) -> None:
         """Do nothing: a mask is given."""
 

@@ -103,6 +103,14 @@ class TrackSettings:
         choices=("grey", "colour", "texture"),
         source=f"{_PAPER}, 2.1",
     )
+    densities: str = setting(
+        "limbs",
+        "what the coupled method tells person and background apart by: the colours of each limb "
+        "and of what lies beside it, learnt from pose to pose; or features of the two regions as a "
+        "whole, estimated anew in each image, as the plain level set does",
+        choices=("limbs", "regions"),
+        source=f"regions: {_PAPER}, 2.1; limbs: {_TRIED}",
+    )
     blur: float = setting(
         3.0, "K_σ that smooths the level set's histograms of 256 values", low=0.5, high=50.0,
         source=f"{_PAPER}, 2.1, which gives no value; {_TRIED}",
