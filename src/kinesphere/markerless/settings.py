@@ -1,6 +1,6 @@
 """Every choice of the tracker, with its unit, range and source."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from kinesphere.data import check_settings, setting
 
@@ -41,6 +41,13 @@ class TrackSettings:
     )
     steepness: float = setting(
         1.0, "samples over which that step rises", low=0.1, high=5.0, source=_TRIED
+    )
+    mask_trust: float = setting(
+        0.49, "the same where masks of every frame are given: these err in places, not pixel by "
+        "pixel", low=0.05, high=0.49, source=_TRIED,
+    )  # fmt: skip
+    mask_steepness: float = setting(
+        0.5, "samples over which their step rises", low=0.1, high=5.0, source=_TRIED
     )
     local: float = setting(
         0.7, "share of the surroundings in the background's colours", low=0.0, high=1.0,
@@ -144,6 +151,10 @@ class TrackSettings:
     radius: float = setting(
         30.0, "how far a contour point may be from the rim at first", unit="px", low=1.0, high=500.0
     )
+
+    def for_masks(self) -> "TrackSettings":
+        """Return what holds where given masks are followed."""
+        return replace(self, trust=self.mask_trust, steepness=self.mask_steepness)
 
     def __post_init__(self) -> None:
         check_settings(self)
