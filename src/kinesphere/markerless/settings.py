@@ -49,6 +49,9 @@ class TrackSettings:
     mask_steepness: float = setting(
         0.5, "samples over which their step rises", low=0.1, high=5.0, source=_TRIED
     )
+    mask_fine: int = setting(
+        5, "iterations at full size on given masks", low=0, high=50, source=_TRIED
+    )
     local: float = setting(
         0.7, "share of the surroundings in the background's colours", low=0.0, high=1.0,
         source=_TRIED,
@@ -154,7 +157,9 @@ class TrackSettings:
 
     def for_masks(self) -> "TrackSettings":
         """Return what holds where given masks are followed."""
-        return replace(self, trust=self.mask_trust, steepness=self.mask_steepness)
+        return replace(
+            self, trust=self.mask_trust, steepness=self.mask_steepness, fine=self.mask_fine
+        )
 
     def __post_init__(self) -> None:
         check_settings(self)
