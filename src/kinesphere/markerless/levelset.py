@@ -4,7 +4,6 @@ Equation 1 is meant with the length's sign turned: as printed it would reward le
 """
 
 from dataclasses import dataclass, replace
-
 from typing import Any
 
 import cv2
