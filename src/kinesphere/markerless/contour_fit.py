@@ -60,7 +60,7 @@ class ContourFitter:
         rounds = s.alternations if coupled else 1
         self.silhouettes[:] = [None] * len(self.pictures)
         for i in range(rounds):
-            contours = self._contours(pose, s.shape if coupled else 0.0)
+            contours = self._contours(pose, s.shape if coupled else 0.0, 2 ** (rounds - 1 - i))
             iterations = max(1, s.contour_iterations // rounds)
             for k in range(iterations):
                 radius = s.radius / (1 + i * iterations + k) ** 0.5
@@ -69,18 +69,22 @@ class ContourFitter:
                     break
         return pose
 
-    def _contours(self, pose: Pose, shape: float) -> list[Contour | None]:
+    def _contours(self, pose: Pose, shape: float, scale: int) -> list[Contour | None]:
         contours: list[Contour | None] = []
+        s = self.fitter.settings
         points = self.fitter.body.skinned(posed(self.fitter.body.chain, pose))
         for i, (eye, picture) in enumerate(zip(self.fitter.eyes, self.pictures, strict=True)):
-            model = eye.canvas.draw(points).limbs != NOWHERE
+            parts = eye.canvas.draw(points)
+            model = parts.limbs != NOWHERE
             if picture is None:
                 found = None
             elif self.masks:
                 box = around(picture > 127, 4)
                 found = None if box is None else cropped(from_mask(picture), box)
             else:
-                found = segment(picture, model, self.fitter.settings, self.silhouettes[i], shape)
+                by_limb = s.method == "coupled" and s.densities == "limbs"
+                known = eye.evidence.ratios(parts, s.margin) if by_limb else None
+                found = segment(picture, model, s, self.silhouettes[i], shape, known, scale)
             self.silhouettes[i] = found
             contours.append(None if found is None else _contour(found, eye.canvas.view, 3))
         return contours
