@@ -18,6 +18,30 @@ from kinesphere.markerless.views import View, view_of
 
 _SIDE = 200
 """px, the longer side."""
+_COARSE = 0.045
+"""m, about the edges of the triangles drawn there."""
+
+
+def coarsened(body: Body, side: float = _COARSE) -> Body:
+    """Return a body of fewer triangles: vertices of one limb in one cube of ``side`` m are one.
+
+    The vertex nearest to their mean stays, so that the surface hardly shrinks.
+    """
+    cubes = np.floor(body.bind / side).astype(np.int64)
+    keys = np.column_stack([body.limb_of_vertex, cubes])
+    _, of_vertex = np.unique(keys, axis=0, return_inverse=True)
+    of_vertex = of_vertex.ravel()
+    n = int(of_vertex.max()) + 1
+    means = np.zeros((n, 3))
+    np.add.at(means, of_vertex, body.bind)
+    means /= np.bincount(of_vertex)[:, None]
+    order = np.argsort(np.linalg.norm(body.bind - means[of_vertex], axis=1), kind="stable")
+    kept = np.empty(n, dtype=np.int64)
+    kept[of_vertex[order[::-1]]] = order[::-1]
+    faces = of_vertex[body.faces].astype(np.int32)
+    a, b, c = faces.T
+    faces = faces[(a != b) & (b != c) & (c != a)]
+    return replace(body, bind=body.bind[kept], faces=faces, shares=body.shares[kept])
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,13 +49,14 @@ class Sketch:
     """A body before small silhouettes of one instant."""
 
     body: Body
+    """Of few triangles."""
     views: tuple[View, ...]
     values: tuple[Values, ...]
     """(height, width) nats by which each pixel is likelier the person's than the background's."""
 
     def with_body(self, body: Body) -> "Sketch":
         """Return another body before the same silhouettes."""
-        return replace(self, body=body)
+        return replace(self, body=coarsened(body))
 
     def worth(self, pose: Pose) -> float:
         """Return how much a pose explains, nats: what it covers of the person less of the rest."""
@@ -82,7 +107,7 @@ def sketch_of(
         p = 0.02 + 0.96 * resized.astype(np.float32) / 255
         small.append(less)
         values.append(np.clip(np.log(p / (1 - p)), -MOST, MOST).astype(np.float32))
-    return Sketch(body, tuple(small), tuple(values))
+    return Sketch(coarsened(body), tuple(small), tuple(values))
 
 
 def _drawn(view: View, points: Array, faces: NDArray[np.int32]) -> NDArray[np.bool_]:
