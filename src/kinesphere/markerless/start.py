@@ -179,14 +179,15 @@ def _closely(
 ) -> _Tried:
     """Return a candidate fitted at full size, and with its proportions if they may change."""
     pose, logs, sketch = _refined(fitter, one.sketch, one.pose), one.logs, one.sketch
-    for i, schedule in enumerate(_SHAPE if fit else ()):
+    for schedule in _SHAPE if fit else ():
         instant = Instant(tuple(masks), pose)
         logs, poses = fit_shape(
             fitter, surface, model, logs, [instant], schedule=schedule, tight=_TIGHT
         )
         sketch = sketch.with_body(model(shaped(surface, logs)))
-        pose = poses[0] if i else with_arms_found(sketch, poses[0])
-        pose = _refined(fitter, sketch, shaken(sketch, pose, _SMALL, _TRIES))
+        pose = _refined(fitter, sketch, shaken(sketch, poses[0], _SMALL, _TRIES))
+    # where the rest is right to a pixel, arms stand out: once more, wherever they can be
+    pose = _refined(fitter, sketch, _with_arms(sketch, pose))
     return _Tried(sketch.worth(pose), pose, logs, sketch)
 
 
