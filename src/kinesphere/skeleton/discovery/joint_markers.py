@@ -15,7 +15,7 @@ from kinesphere.skeleton.discovery.rigidity import Rigidity
 
 FRAMES = 300
 """Frames that a marker's wandering in a body is judged on."""
-SIGNIFICANT = 5.0
+SIGNIFICANT = 3.0
 """Standard errors by which two deviations must differ to count as different."""
 OWN_POSE = 3
 """Markers from which on a body has a pose of its own."""
