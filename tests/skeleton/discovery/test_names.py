@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinesphere.skeleton import discover
-from kinesphere.skeleton.discovery.joint_tree import Edge, Forest
+from kinesphere.skeleton.discovery.forest import Edge, Forest
 from kinesphere.skeleton.discovery.names import Names, shaken
 from kinesphere.skeleton.discovery.person import LIKELY, SHARPNESS, STATURE, Person
 from kinesphere.synthetic import HAND, make_performance, spoil_with_noise

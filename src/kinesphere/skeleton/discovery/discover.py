@@ -20,23 +20,21 @@ from kinesphere.geometry.rigid import RigidFit
 from kinesphere.skeleton.degrees import count_axes
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
 from kinesphere.skeleton.discovery.figure import make_figure
+from kinesphere.skeleton.discovery.forest import Forest, rerooted
+from kinesphere.skeleton.discovery.joint_costs import JointCosts
 from kinesphere.skeleton.discovery.joint_markers import OWN_POSE, owners
-from kinesphere.skeleton.discovery.joint_tree import (
-    Forest,
-    JointCosts,
-    rerooted,
-    similar_forests,
-)
-from kinesphere.skeleton.discovery.names import Names, find_names, no_names, shaken
+from kinesphere.skeleton.discovery.names import Names, find_names, no_names, settled, shaken
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
 from kinesphere.skeleton.discovery.rigidity import worth_grouping
+from kinesphere.skeleton.discovery.rival_trees import similar_forests
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
+from kinesphere.skeleton.discovery.size import PERSON, from_the_middle, subject_size
 from kinesphere.skeleton.discovery.spikes import without_spikes
 from kinesphere.skeleton.discovery.twigs import TORSO, without_twigs
 from kinesphere.skeleton.landmarks import STEADY
 from kinesphere.skeleton.naming import joint_name
 from kinesphere.skeleton.sampling import spread_frames
-from kinesphere.skeleton.scale import scaled, size_share
+from kinesphere.skeleton.scale import size_share
 from kinesphere.skeleton.settings import SkeletonSettings
 
 MODEL = "motion alone"
@@ -96,13 +94,14 @@ def discover(
             "grouped into bodies; at least 3 are needed. What is never around for "
             f"{settings.ghost_s:g} s counts as a reflection (discovery.ghost_s)"
         )
+    columns = columns[from_the_middle(recording.markers[:, columns])]
     markers = without_spikes(recording.markers[:, columns])
-    frames = spread_frames(markers, settings.sample_frames, list(range(len(columns))))
-    points = np.ascontiguousarray(markers[frames])
-    share = size_share(points)
-    limits = scaled(skeleton or SkeletonSettings(), share)
-    costs = JointCosts(points, share)
-    partition = find_partition(points, share, settings, limits, costs)
+    unit = subject_size(markers) / PERSON
+    markers /= unit  # from here on the subject is as large as a person
+    points = np.ascontiguousarray(markers[spread_frames(markers, settings.sample_frames)])
+    limits = skeleton or SkeletonSettings()
+    costs = JointCosts(points, unit)
+    partition = find_partition(points, settings, limits, costs)
     labels = tuple(recording.labels[c] for c in columns)
     _check_tree(partition, labels, settings.tree)
     partition, tree, names = _named(partition, costs, settings)
@@ -112,10 +111,10 @@ def discover(
     tree = next(t for t in forest.trees if tree[0] in t)
     partition = replace(partition, forest=forest)
     counted = 1.0 if settings.bodies else partition.clustering.count_confidence
-    names = shaken(names, forest, counted)
+    names = shaken(settled(names, tree), forest, counted)
     limb_of = {body: names.limbs[body] for body in tree}
-    model = _model(partition, costs, limb_of, labels)
-    near = settings.near_mm * 1e-3 * share
+    model = _model(partition, costs, limb_of, labels, recording.labels)
+    near = settings.near_mm * 1e-3
     ghosts = [
         label
         for column, label in enumerate(recording.labels)
@@ -195,15 +194,20 @@ def _from_the_torso(partition: Partition, limb_of: dict[int, str]) -> Forest:
 
 
 def _model(
-    partition: Partition, costs: JointCosts, limb_of: dict[int, str], labels: Sequence[str]
+    partition: Partition,
+    costs: JointCosts,
+    limb_of: dict[int, str],
+    labels: Sequence[str],
+    in_file: Sequence[str],
 ) -> TopologicalModel:
     """Return the model of one tree; ``limb_of`` has its bodies in order, the root first."""
+    at = {label: column for column, label in enumerate(in_file)}
     owner = owners(partition.bodies, len(labels))
     visits = {m: int(partition.belonging.neighbour[m]) for m in partition.shared}
     segments = tuple(
         Segment(
             limb,
-            tuple(labels[m] for m in partition.bodies[body]),
+            tuple(sorted((labels[m] for m in partition.bodies[body]), key=at.__getitem__)),
             shared=tuple(labels[m] for m, next_one in visits.items() if next_one == body),
         )
         for body, limb in limb_of.items()
@@ -215,7 +219,7 @@ def _model(
         over = [m for m, there in visits.items() if {int(owner[m]), there} == {edge.a, edge.b}]
         landmark = Landmark(
             weights={labels[m]: 1 / len(over) for m in over},
-            spread=AT_THE_JOINT * costs.share,
+            spread=AT_THE_JOINT * size_share(costs.points * costs.unit),
             source=STEADY,
         )
         joints.append(

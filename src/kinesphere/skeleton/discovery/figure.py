@@ -10,7 +10,7 @@ from kinesphere.data import Array
 from kinesphere.geometry.algebraic_centres import score_centre, sphere_centre
 from kinesphere.geometry.rigid import RigidFit, into_frame, out_of_frame
 from kinesphere.skeleton.averages import mean_seen, median_seen
-from kinesphere.skeleton.discovery.joint_tree import JointCosts, Members
+from kinesphere.skeleton.discovery.joint_costs import JointCosts, Members
 
 Point: TypeAlias = tuple[Any, ...]
 """A point by what it is: ("joint", a, b), ("far", body, neighbour), ("body", a) or ("amid", point,
@@ -36,6 +36,8 @@ class Figure:
     """Of each body, (n_sample, n_markers, 3) m."""
     joints: Mapping[frozenset[int], Array]
     """Two bodies that meet → (n_sample, 3) m."""
+    unit: float = 1.0
+    """How many times larger the subject is than the person that all lengths here are of."""
     known: dict[tuple[Point, Point], float] = field(default_factory=dict)
     """Lengths that were asked for: many readings of a tree ask for the same ones."""
 
@@ -121,6 +123,7 @@ def make_figure(
         middles=np.stack([mean_seen(cloud, axis=1) for cloud in clouds], axis=1),
         markers=clouds,
         joints=joints,
+        unit=costs.unit,
     )
 
 

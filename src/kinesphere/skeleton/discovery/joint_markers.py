@@ -8,11 +8,15 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.geometry.rigid import into_frame
 from kinesphere.skeleton.body import measure_shape, robust_rms
-from kinesphere.skeleton.discovery.joint_tree import Forest, JointCosts, Members, find_forest
+from kinesphere.skeleton.discovery.forest import Forest
+from kinesphere.skeleton.discovery.joint_costs import JointCosts, Members
+from kinesphere.skeleton.discovery.joint_tree import find_forest
 from kinesphere.skeleton.discovery.rigidity import Rigidity
 
 FRAMES = 300
 """Frames that a marker's wandering in a body is judged on."""
+SIGNIFICANT = 3.0
+"""Standard errors by which two deviations must differ to count as different."""
 OWN_POSE = 3
 """Markers from which on a body has a pose of its own."""
 
@@ -96,6 +100,39 @@ def resettle(
     return kept, sorted(loose)
 
 
+def to_the_steadiest(rigidity: Rigidity, bodies: Sequence[Members]) -> list[Members]:
+    """Let markers near a joint go where they are steadiest, among bodies rigid to the noise.
+
+    Where nothing but noise moves a body's markers against each other, noise tells which of two
+    bodies a marker rides on, though nearness did not: it is as steady there as the body's own
+    markers are, and not at home. Where skin moves them that says nothing, so a body counts only
+    if it is no less steady than the recording's steadiest distances.
+    """
+    wander, kept = rigidity.wander, [members.copy() for members in bodies]
+    same = 1 + SIGNIFICANT / np.sqrt(2 * len(rigidity.points))
+    for _ in range(len(kept)):
+        steady = steadiness(wander, kept)
+        inner = np.array([_rms(steady[members, b]) for b, members in enumerate(kept)])
+        moves = [
+            (steady[m, target] / steady[m, home], int(m), home, target)
+            for home, members in enumerate(kept)
+            if len(members) > OWN_POSE
+            for m in members
+            for target in range(len(kept))
+            if target != home
+            and len(kept[target]) >= OWN_POSE
+            and inner[target] < same * rigidity.noise
+            and steady[m, target] < same * inner[target]
+            and steady[m, target] * same < steady[m, home]
+        ]
+        if not moves:
+            break
+        _, m, home, target = min(moves)
+        kept[home] = kept[home][kept[home] != m]
+        kept[target] = np.sort(np.append(kept[target], m))
+    return kept
+
+
 _Move = tuple[float, int, int, int]
 """(wander in m, marker, from body, to body)"""
 
@@ -157,6 +194,11 @@ def _joined(
         if steady[m, other] < ratio * max(usual, own):
             joins.append((float(steady[m, other]), m, b, other))
     return min(joins, default=None)
+
+
+def _rms(values: Array) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.sqrt(np.mean(known**2))) if len(known) else np.inf
 
 
 def _least(values: Array) -> float:

@@ -48,7 +48,8 @@ class Person:
     and, if there is one, hand."""
     head: int | None
     cost: float = np.inf
-    """Squared standard deviations of the proportions, and of what is missing or too much."""
+    """Squared standard deviations of the proportions, and of what is missing or too much; of a
+    person of any size."""
     lengths: int = 0
     """How many lengths were judged."""
     stature: float = np.nan
@@ -61,18 +62,18 @@ class Person:
 
     @property
     def size(self) -> float:
-        """Share of the cost that is owed to the stature alone."""
+        """What the stature alone costs."""
         return _off(self.stature, STATURE, SIZES) ** 2
 
     @property
     def convincing(self) -> bool:
-        """Whether proportions and size are those of a person."""
+        """Whether the proportions are those of a person, of any size."""
         return self.cost <= self.nobody
 
     @property
-    def in_proportion(self) -> bool:
-        """Whether the proportions are those of a person of some size."""
-        return self.cost - self.size <= self.nobody
+    def of_human_size(self) -> bool:
+        """Whether proportions and size together are those of a person."""
+        return self.cost + self.size <= self.nobody
 
     @property
     def hips_at(self) -> int:
@@ -81,10 +82,10 @@ class Person:
 
 
 def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | None:
-    """Return the likeliest reading of a tree as a person and its confidence 0…1.
+    """Return the likeliest reading of a tree as a person, and the cost of the next.
 
-    The confidence compares with the best reading in which any body is another limb, and with
-    seeing no person at all. None where no part of the tree can be two legs.
+    That is the best reading in which any body is another limb; infinite if there is none. Size
+    plays no part: a doll is a person. None where no part of the tree can be two legs.
 
     Parameters
     ----------
@@ -100,8 +101,12 @@ def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | N
     best = readings[0]
     mine = _limbs(best)
     rival = next((p.cost for p in readings[1:] if _contradicts(_limbs(p), mine)), np.inf)
-    margin = min(rival, best.nobody) - best.cost
-    return best, float(1 / (1 + np.exp(-margin / SHARPNESS)))
+    return best, rival
+
+
+def confidence_of(cost: float, rival: float) -> float:
+    """Return 0…1 that a reading is right rather than one of another cost."""
+    return float(1 / (1 + np.exp(-(rival - cost) / SHARPNESS)))
 
 
 def _readings(figure: Figure, tree: Sequence[int]) -> Iterator[Person]:
@@ -178,8 +183,8 @@ def _judged(figure: Figure, person: Person, n_bodies: int) -> Person:
     blades = sum(at != person.trunk for at, _ in person.arms)
     missing += EXTRA * blades + UNEXPLAINED * (n_bodies - blades - len(_limbs(person)))
     square = np.nan_to_num(np.array(off) ** 2, nan=np.inf)
-    judged = replace(person, lengths=len(off), stature=stature)
-    return replace(judged, cost=float(square.sum()) + missing + judged.size)
+    judged = replace(person, lengths=len(off), stature=stature * figure.unit)
+    return replace(judged, cost=float(square.sum()) + missing)
 
 
 def _off(found: float, expected: float, deviation: float) -> float:
