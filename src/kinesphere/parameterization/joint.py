@@ -171,6 +171,7 @@ def solve_joint(
         view.twist_known,
         options,
         settings.twist,
+        view.samples.rate,
     )
 
 
