@@ -19,8 +19,9 @@ from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.signature import Signature, scale_of, signature
 from kinesphere.labelling.blocks import Moves, block_moves, twins
 from kinesphere.labelling.bodies import bodies_of
+from kinesphere.labelling.held import held_to_distances
 from kinesphere.labelling.matching import Match, nothing
-from kinesphere.labelling.plausible import is_still, plausible
+from kinesphere.labelling.plausible import is_still, learnt_standing, plausible
 from kinesphere.labelling.problem import Labels, Problem, problem_of
 from kinesphere.labelling.same_person import (
     SKIN,
@@ -111,6 +112,12 @@ def match_pair_statistics(
     again = _of_person(found, layout, model)
     if again is not None:
         return _match(again, layout, kept, n_points, model.name)
+    if learnt_standing(model):
+        return nothing(
+            n_points,
+            f"model {model.name} was learnt from people standing still: it knows those people by "
+            "their distances, and nobody here has them",
+        )
     if start is None and is_still(found):
         return nothing(
             n_points, "nothing moves: markers are recognised by how they move with each other"
@@ -204,7 +211,11 @@ def _of_person(found: Signature, layout: _Layout, model: TopologicalModel) -> _S
     labels, energy = _refined(problem, labels, own)
     if not is_the_person(found.mean, labels, own.template, rigid):
         return None
-    return _finished(found, size, own, problem, labels, energy, [])
+    solved = _finished(found, size, own, problem, labels, energy, [])
+    wanted = size * own.template.mean
+    held = held_to_distances(problem, found.mean, solved.labels, wanted, rigid, segments)
+    margins = np.where(held == solved.labels, solved.margins, MARGIN)
+    return _Solved(solved.problem, held, solved.problem.energy(held), margins, [])
 
 
 def _continued(found: Signature, layout: _Layout, labels: Labels) -> _Solved:

@@ -6,6 +6,7 @@ over the points that have its distances, and the choice of places is an assignme
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,16 @@ PLACES = 40
 """Places of a whole segment that are tried."""
 SEEN = 9.0
 """Square of deviations that a marker which is not there costs, and a distance at most."""
+
+
+class Place(NamedTuple):
+    """Where a segment may be."""
+
+    labels: Labels
+    points: Labels
+    """The point of each label, −1 for one that is not there."""
+    cost: float
+    """Sum of the squares of deviations."""
 
 
 def seated(
@@ -46,13 +57,13 @@ def seated(
         place
         for labels in segments
         if len(labels) >= FEWEST
-        for place in _places(mean, wanted, rigid, deviation, labels)
+        for place in places_of(mean, wanted, rigid, deviation, labels)
     ]
     seats = np.full(problem.n_points, -1, dtype=np.int64)
     energy = 0.0
     while True:
         best = None
-        for labels, points in places:
+        for labels, points, _ in places:
             changed = seats.copy()
             changed[np.isin(changed, labels)] = -1
             there = points >= 0
@@ -65,10 +76,10 @@ def seated(
         energy, seats = best
 
 
-def _places(
+def places_of(
     mean: Array, wanted: Array, rigid: NDArray[np.bool_], deviation: float, labels: Sequence[int]
-) -> list[tuple[Labels, Labels]]:
-    """Return where a segment may be: its labels, and their points, −1 for one that is not there."""
+) -> list[Place]:
+    """Return where a segment may be, by its distances alone, the best place first."""
     order = _linked_first(np.array(labels, dtype=np.int64), rigid)
     n = len(mean)
     # each row is a place so far: the points of the labels up to here
@@ -96,7 +107,8 @@ def _places(
         row, point = np.divmod(kept, n + 1)
         point = np.where(point == n, -1, point)
         rows, costs = np.column_stack([rows[row], point]), total.ravel()[kept]
-    return [(order, row) for row in rows if (row >= 0).sum() >= FEWEST]
+    enough = (rows >= 0).sum(axis=1) >= FEWEST
+    return [Place(order, row, float(c)) for row, c in zip(rows[enough], costs[enough], strict=True)]
 
 
 def _linked_first(labels: Labels, rigid: NDArray[np.bool_]) -> Labels:
