@@ -90,6 +90,33 @@ def functional() -> list[dict[str, Any]]:
     return rows
 
 
+def static() -> list[dict[str, Any]]:
+    """Movements by the model of a standing trial, of the same person and of another one."""
+    known = built_in_model("plugin-gait")
+    rows = []
+
+    def trial(path: str) -> Recording:
+        return match_labels(read(folder() / path), known)
+
+    people = {
+        "functional/anatomical_posture": [
+            f"functional/Test_func_{x}"
+            for x in ("anat", "lankle", "lhip", "lknee", "rankle", "rhip", "rknee", "trunk")
+        ],
+        "plugin-gait/PiG_Calibration-FlatFoot-Full": ["plugin-gait/PiG_Motion-FlatFoot-Full"],
+        "plugin-gait/pycgm_static": ["plugin-gait/pycgm_movement"],
+    }
+    for standing, own in people.items():
+        learnt = marker_statistics(trial(f"{standing}.c3d"), known.labels, standing)
+        model = replace(known, statistics=(learnt,))
+        for moving in [m for trials in people.values() for m in trials]:
+            if moving in own:
+                rows.append(_score(moving, model, trial(f"{moving}.c3d"), f"by {standing} (one person)"))
+            elif moving in (people["functional/anatomical_posture"][-1], "plugin-gait/pycgm_movement", "plugin-gait/PiG_Motion-FlatFoot-Full"):
+                rows.append(_score(moving, model, trial(f"{moving}.c3d"), f"by {standing} (another person)"))
+    return rows
+
+
 def creatures() -> list[dict[str, Any]]:
     """Synthetic bodies that are no people, by the models of two others of their kind."""
     rows = []

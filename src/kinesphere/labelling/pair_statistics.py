@@ -19,9 +19,16 @@ from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.signature import Signature, scale_of, signature
 from kinesphere.labelling.blocks import Moves, block_moves, twins
 from kinesphere.labelling.bodies import bodies_of
+from kinesphere.labelling.held import held_to_distances
 from kinesphere.labelling.matching import Match, nothing
-from kinesphere.labelling.plausible import is_still, plausible
+from kinesphere.labelling.plausible import is_still, learnt_standing, plausible
 from kinesphere.labelling.problem import Labels, Problem, problem_of
+from kinesphere.labelling.same_person import (
+    SKIN,
+    is_the_person,
+    rigid_pairs,
+    template_of_person,
+)
 from kinesphere.labelling.search import (
     doubt,
     exchange_blocks,
@@ -29,6 +36,7 @@ from kinesphere.labelling.search import (
     nearest_labels,
     shake,
 )
+from kinesphere.labelling.seating import seated
 from kinesphere.labelling.template import LEAST_LABELS, Template, template_of
 
 MARGIN = 8.0
@@ -101,6 +109,15 @@ def match_pair_statistics(
             n_points, f"{len(kept)} markers are seen; {LEAST_LABELS} at least can be told apart"
         )
     found = signature(points[:, kept])
+    again = _of_person(found, layout, model)
+    if again is not None:
+        return _match(again, layout, kept, n_points, model.name)
+    if learnt_standing(model):
+        return nothing(
+            n_points,
+            f"model {model.name} was learnt from people standing still: it knows those people by "
+            "their distances, and nobody here has them",
+        )
     if start is None and is_still(found):
         return nothing(
             n_points, "nothing moves: markers are recognised by how they move with each other"
@@ -177,6 +194,28 @@ def _solve(found: Signature, layout: _Layout) -> _Solved:
         problem = problem_of(found, scale, template)
         labels, energy, rivals = *_refined(problem, labels, layout), []
     return _finished(found, scale, layout, problem, labels, energy, rivals)
+
+
+def _of_person(found: Signature, layout: _Layout, model: TopologicalModel) -> _Solved | None:
+    """Label points as those of the one person the model was learnt from, if they prove to be."""
+    names = layout.template.labels
+    rigid = rigid_pairs(model, names, model.statistics)
+    if not rigid.any():
+        return None
+    own = replace(layout, template=template_of_person(layout.template, rigid))
+    size = own.template.size
+    problem = problem_of(found, size, own.template)
+    at = {label: i for i, label in enumerate(names)}
+    segments = [[at[x] for x in (*s.markers, *s.shared) if x in at] for s in model.segments]
+    labels = seated(problem, found.mean, size * own.template.mean, rigid, SKIN, segments)
+    labels, energy = _refined(problem, labels, own)
+    if not is_the_person(found.mean, labels, own.template, rigid):
+        return None
+    solved = _finished(found, size, own, problem, labels, energy, [])
+    wanted = size * own.template.mean
+    held = held_to_distances(problem, found.mean, solved.labels, wanted, rigid, segments)
+    margins = np.where(held == solved.labels, solved.margins, MARGIN)
+    return _Solved(solved.problem, held, solved.problem.energy(held), margins, [])
 
 
 def _continued(found: Signature, layout: _Layout, labels: Labels) -> _Solved:
