@@ -60,6 +60,14 @@ def test_the_body_is_drawn_where_it_has_a_pose(film, tracked_film):
     assert len(pictures) == film.scene.n_frames
 
 
+def test_frames_that_were_never_reached_are_not_shown(film, tracked_film):
+    tracked = tracked_film(film)
+    parameters = tracked.parameters.copy()
+    parameters[:2] = parameters[6:] = np.nan
+    stopped = replace(tracked, parameters=parameters, n_reached=4)
+    assert len(decoded(overlay_film(film.scene, stopped)[0])[1]) == 4
+
+
 def test_panels_show_the_whole_body_and_are_never_enlarged(film, tracked_film):
     tracked = tracked_film(film)
     panels = panels_for(film.scene, tracked, range(9), np.inf)

@@ -57,6 +57,18 @@ def test_the_section_tells_of_lost_limbs(film, spoiled):
     assert broken.count("M") == 2  # the curve breaks where there was no image
 
 
+def test_overlap_with_given_masks_stands_apart(film, spoiled):
+    by_mask = np.zeros(spoiled.overlap.shape, dtype=bool)
+    by_mask[[2, 7], 1] = True
+    overlap = spoiled.overlap.copy()
+    overlap[[2, 7], 1] = 0.5, 0.7
+    html = tracking_section(
+        film.scene, replace(spoiled, overlap=overlap, by_mask=by_mask), b"", [0]
+    )
+    assert '<td class="n">0.60</td><td class="n">2</td>' in html
+    assert "with given masks" not in tracking_section(film.scene, spoiled, b"", [0])
+
+
 def test_names_of_cameras_cannot_smuggle_markup(film, spoiled):
     camera = replace(film.scene.cameras[0], name="<script>alert(1)</script>")
     scene = replace(film.scene, cameras=(camera, *film.scene.cameras[1:]))

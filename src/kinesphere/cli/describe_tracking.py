@@ -7,6 +7,8 @@ import numpy as np
 from kinesphere.cli.console import print_table, print_title, stdout
 from kinesphere.markerless import TrackedMotion
 
+_OVERLAPS = ("overlap_mean", "overlap_least", "overlap_with_masks")
+
 
 def describe_tracking(tracked: TrackedMotion, cameras: list[str]) -> dict[str, Any]:
     """Return overlap by camera, and support and lost frames by limb."""
@@ -24,8 +26,16 @@ def describe_tracking(tracked: TrackedMotion, cameras: list[str]) -> dict[str, A
         "n_solved": int(tracked.solved.sum()),
         "overlap_mean": mean(tracked.overlap),
         "cameras": [
-            {"name": name, "overlap_mean": mean(o), "overlap_least": least(o)}
-            for name, o in zip(cameras, tracked.overlap.T, strict=True)
+            {
+                "name": name,
+                "overlap_mean": mean(o),
+                "overlap_least": least(o),
+                "overlap_with_masks": mean(m),
+                "n_masks": int(np.isfinite(m).sum()),
+            }
+            for name, o, m in zip(
+                cameras, tracked.overlap.T, tracked.overlap_with_masks.T, strict=True
+            )
         ],
         "limbs": [
             {
@@ -45,9 +55,12 @@ def show_tracking(found: dict[str, Any]) -> None:
     console = stdout()
     print_title(console, "Cameras", f"{found['n_solved']} of {found['n_frames']} frames solved")
     rows = [
-        (c["name"], _share(c["overlap_mean"]), _share(c["overlap_least"])) for c in found["cameras"]
+        (c["name"], *(_share(c[key]) for key in _OVERLAPS), str(c["n_masks"] or ""))
+        for c in found["cameras"]
     ]
-    print_table(console, ("camera", "overlap, mean", "least"), rows, "lrr")
+    header = ("camera", "overlap, mean", "least", "with given masks", "masks")
+    shown = len(header) if any(c["n_masks"] for c in found["cameras"]) else 3
+    print_table(console, header[:shown], [row[:shown] for row in rows], "lrrrr")
     print_title(console, "Limbs", "support: share of the visible rim that speaks for the pose")
     limbs = [
         (

@@ -34,6 +34,7 @@ class Account:
         self._rotations = np.full((n, limbs, 3, 3), np.nan)
         self._origins = np.full((n, limbs, 3), np.nan)
         self._overlap = np.full((n, cameras), np.nan)
+        self._by_mask = np.zeros((n, cameras), dtype=bool)
         self._support = np.full((n, limbs), np.nan)
         self._lost = np.zeros((n, limbs), dtype=bool)
         self._entered = np.zeros(n, dtype=bool)
@@ -76,6 +77,7 @@ class Account:
             person: NDArray[np.bool_]
             if given is not None:
                 person = eye.canvas.view.image(given) > 127
+                self._by_mask[frame.index, i] = True
             else:
                 model, person = eye.evidence.person(model)
             union = float((model | person).sum())
@@ -137,5 +139,6 @@ class Account:
             seconds=dict(self.seconds),
             history=history,
             surface=surface,
+            by_mask=self._by_mask,
             n_reached=self.n_entered if self.n_entered < self.scene.n_frames else None,
         )

@@ -54,6 +54,8 @@ def check_scene(scene: Scene) -> Step:
         )
     every = max(1, int(spread[1] - spread[0])) if scene.n_frames > 1 else 1
     some = [silhouettes(scene, frame) for frame in scene.frames(0, None, every)]
+    if scene.start.frame % every:  # where masks are few, the start has one
+        some.append(silhouettes(scene, scene.frame(scene.start.frame)))
     seen = sights(scene.cameras, some)
     apart = disagreement(seen)
     diagonal = float(np.mean([np.hypot(c.width, c.height) for c in scene.cameras]))

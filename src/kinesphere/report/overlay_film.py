@@ -51,7 +51,7 @@ def overlay_film(
     target = io.BytesIO()
     poster: Image | None = None
     with VideoWriter(target, scene.rate / every, _QUALITY) as video:
-        for frame in scene.frames(0, None, every):
+        for frame in scene.frames(*_reached(tracked), every):
             if progress is not None:
                 progress("video", frame.index, scene.n_frames)
             titles = [
@@ -102,6 +102,14 @@ def sheet_for(panels: list[Panel]) -> Sheet:
     fitted = tuple(panel.within(*cell(columns)) for panel in panels)
     width, height = (max(sides) for sides in zip(*(panel.size for panel in fitted), strict=True))
     return Sheet(fitted, columns, width + _GAP, height + _GAP + _LINE)
+
+
+def _reached(tracked: TrackedMotion) -> tuple[int, int]:
+    """Return the frames to show: all, or those that tracking reached before it was interrupted."""
+    found = np.flatnonzero(tracked.solved)
+    if tracked.n_reached is None or not len(found):
+        return 0, tracked.n_frames
+    return int(found[0]), int(found[-1]) + 1
 
 
 def _words(scene: Scene, tracked: TrackedMotion, index: int) -> str:

@@ -42,9 +42,18 @@ def tracking_section(
             strip=base64.b64encode(strip).decode(),
             frames=", ".join(str(f + scene.first_frame + 1) for f in frames),
             cameras=[
-                {"name": name, "mean": _share(o), "least": _share(o, least=True)}
-                for name, o in zip(names, tracked.overlap.T, strict=True)
+                {
+                    "name": name,
+                    "mean": _share(o),
+                    "least": _share(o, least=True),
+                    "masks": _share(m),
+                    "n_masks": int(np.isfinite(m).sum()),
+                }
+                for name, o, m in zip(
+                    names, tracked.overlap.T, tracked.overlap_with_masks.T, strict=True
+                )
             ],
+            masks_given=bool(np.isfinite(tracked.overlap_with_masks).any()),
             overlap=_curves(tracked.overlap),
             limbs=[
                 {
