@@ -17,6 +17,7 @@ from kinesphere.skeleton.discovery.joint_markers import (
     usual_wander,
 )
 from kinesphere.skeleton.discovery.joint_tree import find_forest
+from kinesphere.skeleton.discovery.pieces import rejoined
 from kinesphere.skeleton.discovery.rigidity import Rigidity, measure_rigidity
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.settings import SkeletonSettings
@@ -90,6 +91,8 @@ def find_partition(
             rigidity, members_of(labels), costs, settings.shared_ratio, settings.split_ratio
         )
         bodies = to_the_steadiest(rigidity, bodies)
+        usual = usual_wander(rigidity.wander, bodies) or rigidity.noise
+        bodies = rejoined(bodies, rigidity.wander, usual, costs, settings.split_ratio)
     forest = find_forest(costs, bodies)
     belonging = measure_belonging(
         rigidity, bodies, forest, limits.outlier_mm * 1e-3, limits.min_spread_mm * 1e-3
