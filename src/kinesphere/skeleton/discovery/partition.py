@@ -92,7 +92,7 @@ def find_partition(
         )
         bodies = to_the_steadiest(rigidity, bodies)
         usual = usual_wander(rigidity.wander, bodies) or rigidity.noise
-        bodies = rejoined(bodies, rigidity.wander, usual, costs, settings.split_ratio)
+        bodies = rejoined(bodies, rigidity.wander, usual, costs, settings.shared_ratio)
     forest = find_forest(costs, bodies)
     belonging = measure_belonging(
         rigidity, bodies, forest, limits.outlier_mm * 1e-3, limits.min_spread_mm * 1e-3

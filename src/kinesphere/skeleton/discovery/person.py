@@ -84,10 +84,11 @@ class Person:
 
 
 def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | None:
-    """Return the likeliest reading of a tree as a person, and the cost of the next.
+    """Return the likeliest reading of a tree as a person and its confidence 0…1.
 
-    That is the best reading in which any body is another limb; infinite if there is none. Size
-    plays no part: a doll is a person. None where no part of the tree can be two legs.
+    The confidence compares with the best reading in which any body is another limb, and with
+    seeing no person at all. Size plays no part: a doll is a person. None where no part of the tree
+    can be two legs.
 
     Parameters
     ----------
@@ -103,7 +104,7 @@ def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | N
     best = readings[0]
     mine = _limbs(best)
     rival = next((p.cost for p in readings[1:] if _contradicts(_limbs(p), mine)), np.inf)
-    return best, rival
+    return best, confidence_of(best.cost, min(rival, best.nobody))
 
 
 def confidence_of(cost: float, rival: float) -> float:
