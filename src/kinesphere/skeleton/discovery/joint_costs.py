@@ -16,9 +16,9 @@ of a joint may be apart: plainly moving together (recordings at hand have up to 
 than each by itself."""
 STEADY = 0.01
 """m, most that noise and skin alone take the images apart; beyond it only the first will do."""
-ADJOINING = 0.3
-"""m between the nearest markers of two bodies up to which steady ones may meet though neither
-shows: a foot that stands still and its shank."""
+ADJOINING = 1.0
+"""Times both bodies' lengths together between their nearest markers up to which steady ones may
+meet though neither shows: a foot that stands still and its shank."""
 
 Members = NDArray[np.intp]
 
@@ -64,8 +64,14 @@ class JointCosts:
             return False
         if view.unsteady < SHARED * moved:
             return True
-        apart = np.linalg.norm(self.points[:, a, None] - self.points[:, None, b], axis=-1)
-        return bool(np.nanmin(median_seen(apart), initial=np.inf) <= ADJOINING)
+        long = np.nanmax(self._apart(a, a)) + np.nanmax(self._apart(b, b))
+        return bool(np.nanmin(self._apart(a, b), initial=np.inf) <= ADJOINING * long)
+
+    def _apart(self, a: Members, b: Members) -> Array:
+        """Return the usual distances between two bodies' markers, (n_a, n_b) m."""
+        return median_seen(
+            np.linalg.norm(self.points[:, a, None] - self.points[:, None, b], axis=-1)
+        )
 
     def pose(self, members: Members) -> RigidFit | None:
         """Return the poses of a body in the frames of ``points``; None if it has none."""

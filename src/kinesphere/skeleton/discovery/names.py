@@ -55,10 +55,9 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     nobody = no_names(tree, "no person is seen in the tree of bodies; limbs are numbered")
     if found is None:
         return nobody
-    person, rival = found
+    person, confidence = found
     if not person.convincing:
         return replace(nobody, cost=person.cost)
-    confidence = confidence_of(person.cost, min(rival, person.nobody))
     account: dict[str, Json] = {
         "person": True,
         "tree_confidence": round(confidence, 3),

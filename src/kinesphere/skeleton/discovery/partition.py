@@ -5,20 +5,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.skeleton.discovery.belonging import Belonging, measure_belonging
 from kinesphere.skeleton.discovery.chains import split_chains
 from kinesphere.skeleton.discovery.clustering import METHODS, Clustering
+from kinesphere.skeleton.discovery.exchange import to_the_steadiest
 from kinesphere.skeleton.discovery.forest import Forest, contracted
 from kinesphere.skeleton.discovery.joint_costs import JointCosts, Members
-from kinesphere.skeleton.discovery.joint_markers import (
-    Belonging,
-    measure_belonging,
-    resettle,
-    to_the_steadiest,
-    usual_wander,
-)
 from kinesphere.skeleton.discovery.joint_tree import find_forest
+from kinesphere.skeleton.discovery.loners import resettle
+from kinesphere.skeleton.discovery.pieces import rejoined
 from kinesphere.skeleton.discovery.rigidity import Rigidity, measure_rigidity
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
+from kinesphere.skeleton.discovery.steadiness import usual_wander
 from kinesphere.skeleton.settings import SkeletonSettings
 
 
@@ -90,6 +88,8 @@ def find_partition(
             rigidity, members_of(labels), costs, settings.shared_ratio, settings.split_ratio
         )
         bodies = to_the_steadiest(rigidity, bodies)
+        usual = usual_wander(rigidity.wander, bodies) or rigidity.noise
+        bodies = rejoined(bodies, rigidity.wander, usual, costs, settings.shared_ratio)
     forest = find_forest(costs, bodies)
     belonging = measure_belonging(
         rigidity, bodies, forest, limits.outlier_mm * 1e-3, limits.min_spread_mm * 1e-3

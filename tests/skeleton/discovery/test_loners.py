@@ -3,17 +3,12 @@
 import numpy as np
 import pytest
 
+from kinesphere.skeleton.discovery.belonging import Belonging, measure_belonging
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
-from kinesphere.skeleton.discovery.joint_markers import (
-    Belonging,
-    measure_belonging,
-    owners,
-    resettle,
-    steadiness,
-    usual_wander,
-)
 from kinesphere.skeleton.discovery.joint_tree import find_forest
+from kinesphere.skeleton.discovery.loners import resettle
 from kinesphere.skeleton.discovery.rigidity import measure_rigidity
+from kinesphere.skeleton.discovery.steadiness import owners, steadiness, usual_wander
 
 RATIO, CHAIN = 2.0, 3.0
 
