@@ -107,6 +107,11 @@ class LiveLabels:
         self._here = here
         return given
 
+    def placed(self, points: Array) -> NDArray[np.int64]:
+        """Return labels of points of the last frame, (n_points,), −1 for those that bear none."""
+        same = (np.asarray(points)[:, None] == self._here).all(axis=2)
+        return np.where(same.any(axis=1), same.argmax(axis=1), -1)
+
     def _fit(self, here: Array, fit: Array) -> None:
         _own_fit(here, self.own.mean, self.own.deviation, self._ranked, fit)
 
