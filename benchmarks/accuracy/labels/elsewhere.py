@@ -111,9 +111,17 @@ def static() -> list[dict[str, Any]]:
         model = replace(known, statistics=(learnt,))
         for moving in [m for trials in people.values() for m in trials]:
             if moving in own:
-                rows.append(_score(moving, model, trial(f"{moving}.c3d"), f"by {standing} (one person)"))
-            elif moving in (people["functional/anatomical_posture"][-1], "plugin-gait/pycgm_movement", "plugin-gait/PiG_Motion-FlatFoot-Full"):
-                rows.append(_score(moving, model, trial(f"{moving}.c3d"), f"by {standing} (another person)"))
+                rows.append(
+                    _score(moving, model, trial(f"{moving}.c3d"), f"by {standing} (one person)")
+                )
+            elif moving in (
+                people["functional/anatomical_posture"][-1],
+                "plugin-gait/pycgm_movement",
+                "plugin-gait/PiG_Motion-FlatFoot-Full",
+            ):
+                rows.append(
+                    _score(moving, model, trial(f"{moving}.c3d"), f"by {standing} (another person)")
+                )
     return rows
 
 
