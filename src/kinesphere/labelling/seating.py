@@ -99,9 +99,7 @@ def places_of(
             taken = rows[:, column]
             held = taken >= 0
             squares[held, taken[held]] = np.inf
-        total = np.concatenate(
-            [costs[:, None] + squares, costs[:, None] + absent], axis=1
-        )
+        total = np.concatenate([costs[:, None] + squares, costs[:, None] + absent], axis=1)
         kept = np.argsort(total, axis=None, kind="stable")[: BEAM if k + 1 < len(order) else PLACES]
         kept = kept[np.isfinite(total.ravel()[kept])]
         row, point = np.divmod(kept, n + 1)
