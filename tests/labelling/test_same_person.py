@@ -78,9 +78,10 @@ class TestRigidPairs:
         assert not (rigid & ~together).any()
         assert not rigid.diagonal().any()
 
-    def test_several_people_have_none(self, legs):
-        model, _ = legs
-        assert not rigid_pairs(model, model.labels, model.statistics).any()
+    def test_people_of_two_sizes_have_none(self, static_model):
+        one = static_model.statistics[0]
+        taller = replace(one, mean=1.2 * one.mean)
+        assert not rigid_pairs(static_model, static_model.labels, (one, taller)).any()
 
     def test_one_person_twice_has_them_still(self, legs, static_model, rng):
         again = marker_statistics(standing(legs[1], rng), static_model.labels, "again")
