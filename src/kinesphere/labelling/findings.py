@@ -58,7 +58,9 @@ def step_of(
     )
     warnings = [*state.notes]
     given = len(known) - len(missing)
-    if missing:
+    if missing and not given:
+        warnings.append(f"none of the {len(known)} labels of model {model.name} was given")
+    elif missing:
         warnings.append(
             f"{given} of {len(known)} labels of model {model.name} were given; not found or not "
             f"told from others: {', '.join(map(str, missing))}"
