@@ -25,7 +25,11 @@ SQUATTING = "a similar layout of 53 markers, squatting"
 _SAME = ("LFHD", "LBHD", "LUPA", "LELB", "LFWT", "LBWT", "LKNE", "LSHN", "LANK", "LTOE", "LMT5")
 _LEFT = {
     **dict(zip(_SAME, _SAME, strict=True)),
-    "LHIP": "LTHI", "LHEL": "LHEE", "LFSH": "LSHO", "LOWR": "LWRB", "LIWR": "LWRA",
+    "LHIP": "LTHI",
+    "LHEL": "LHEE",
+    "LFSH": "LSHO",
+    "LOWR": "LWRB",
+    "LIWR": "LWRA",
 }
 COUNTERPARTS = {
     **{x: x for x in ("C7", "T10", "CLAV", "STRN")},
