@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from kinesphere.data import Array
 from kinesphere.labelling.problem import Labels, Problem
 from kinesphere.labelling.same_person import ALIKE, SKIN
-from kinesphere.labelling.seating import places_of
+from kinesphere.labelling.seating import SEEN, places_of
 
 DENIED = 0.5
 """Share of a marker's distances within segments from which on they deny its label."""
@@ -20,6 +20,8 @@ FEWEST = 3
 """Distances that prove a label: two leave a circle."""
 RIVAL = 6.0
 """Squares of deviations by which a place of a segment may be worse and still be the true one."""
+BETTER = 9.0
+"""Squares of deviations by which another place must fit a segment better than where it is."""
 CLEAR = 4.0
 """Nats by which one of them must fit the rest of the body better than the others."""
 
@@ -47,12 +49,14 @@ def held_to_distances(
     segments
         Labels of each segment.
     """
-    labels = labels.copy()
+    before, labels = labels, labels.copy()
     denied = _drop(mean, labels, wanted, rigid)
     for segment in segments:
-        present = denied.union(labels.tolist()).intersection(segment)
-        if 2 * len(denied.intersection(segment)) > len(present):
-            _seat_again(problem, mean, labels, wanted, rigid, np.array(segment))
+        gone = denied.intersection(segment)
+        # three markers fit three points by chance, unless most of them have nowhere else to be
+        if gone and (len(segment) > FEWEST or 2 * len(gone) > FEWEST):
+            worst = _cost(mean, before, wanted, rigid, segment) - BETTER
+            _seat_again(problem, mean, labels, wanted, rigid, np.array(segment), worst)
     _drop(mean, labels, wanted, rigid)
     _fill(mean, labels, wanted, rigid)
     return labels
@@ -82,10 +86,17 @@ def _seat_again(
     wanted: Array,
     rigid: NDArray[np.bool_],
     segment: Labels,
+    worst: float,
 ) -> None:
-    """Give a segment the place of least energy of those that its distances allow, if one is."""
+    """Give a segment the place of least energy of those that its distances allow.
+
+    Places must not cost more than ``worst``; if there is none, it stays where it is.
+    """
     open_to = np.flatnonzero((labels < 0) | np.isin(labels, segment))
     places = places_of(mean[np.ix_(open_to, open_to)], wanted, rigid, SKIN, segment.tolist())
+    places = [place for place in places if place.cost <= worst]
+    if not places:
+        return
     labels[np.isin(labels, segment)] = -1
     tried = []
     for place in places:
@@ -94,12 +105,21 @@ def _seat_again(
             changed = labels.copy()
             changed[open_to[place.points[there]]] = place.labels[there]
             tried.append((problem.energy(changed), changed))
-    if not tried:
-        return
     least, best = min(tried, key=lambda one: one[0])
     near = [changed for energy, changed in tried if energy < least + CLEAR]
     same = np.all([changed == best for changed in near], axis=0)
     labels[same] = best[same]
+
+
+def _cost(
+    mean: Array, labels: Labels, wanted: Array, rigid: NDArray[np.bool_], segment: Sequence[int]
+) -> float:
+    """Return what a segment costs where it is, as places of it do."""
+    points = np.flatnonzero(np.isin(labels, segment))
+    bears = labels[points]
+    off = (mean[np.ix_(points, points)] - wanted[np.ix_(bears, bears)]) / SKIN
+    squares = np.where(rigid[np.ix_(bears, bears)], np.minimum(np.nan_to_num(off**2), SEEN), 0.0)
+    return float(squares.sum() / 2 + SEEN * (len(segment) - len(points)))
 
 
 def _fill(mean: Array, labels: Labels, wanted: Array, rigid: NDArray[np.bool_]) -> None:

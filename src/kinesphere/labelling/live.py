@@ -96,7 +96,7 @@ class LiveLabels:
         fit = np.empty(len(here))
         self._fit(here, fit)
         if (fit > DENIED).any():
-            self._hold(points, given, here, fit)
+            self._hold(given, here, fit)
         if (given < 0).any() and (given >= 0).sum() < len(self.labels):
             self._bring_back(points, given, here)
         self._learn(here, fit)
@@ -107,10 +107,15 @@ class LiveLabels:
         self._here = here
         return given
 
+    def placed(self, points: Array) -> NDArray[np.int64]:
+        """Return labels of points of the last frame, (n_points,), −1 for those that bear none."""
+        same = (np.asarray(points)[:, None] == self._here).all(axis=2)
+        return np.where(same.any(axis=1), same.argmax(axis=1), -1)
+
     def _fit(self, here: Array, fit: Array) -> None:
         _own_fit(here, self.own.mean, self.own.deviation, self._ranked, fit)
 
-    def _hold(self, points: Array, given: NDArray[np.int64], here: Array, fit: Array) -> None:
+    def _hold(self, given: NDArray[np.int64], here: Array, fit: Array) -> None:
         """Exchange labels that fit each other's points, and take away what has long been lost."""
         doubted = np.flatnonzero(fit > DENIED)
         if len(doubted) > 1:
@@ -136,9 +141,7 @@ class LiveLabels:
             given[np.isin(given, np.flatnonzero(gone))] = -1
             here[gone] = np.nan
 
-    def _costs(
-        self, points: Array, labels: NDArray[np.intp], here: Array, cost: Array
-    ) -> None:
+    def _costs(self, points: Array, labels: NDArray[np.intp], here: Array, cost: Array) -> None:
         _distance_costs(
             points, labels, here, self.own.mean, self.own.deviation, self._ranked, FAR, cost
         )

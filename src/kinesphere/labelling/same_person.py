@@ -55,7 +55,7 @@ def rigid_pairs(
     alike = (high - low)[rigid] <= ALIKE
     if rigid.sum() < 2 * LEAST_PAIRS or alike.mean() < PROVED:
         return np.zeros((n, n), dtype=bool)
-    return rigid & (high - low <= ALIKE)
+    return np.asarray(rigid & (high - low <= ALIKE))
 
 
 def template_of_person(template: Template, rigid: NDArray[np.bool_]) -> Template:

@@ -94,14 +94,12 @@ def places_of(
             off = (mean[points] - wanted[order[k], order[earlier]]) / deviation
             part = np.minimum(np.nan_to_num(off**2, nan=SEEN), SEEN)
             squares += np.where(points[:, None] < 0, 0.0, part)
-        bound = np.count_nonzero(rigid[order[k], order[:k]])
+        absent = SEEN if rigid[order[k], order[:k]].any() else 0.0
         for column in range(k):
             taken = rows[:, column]
             held = taken >= 0
             squares[held, taken[held]] = np.inf
-        total = np.concatenate(
-            [costs[:, None] + squares, costs[:, None] + min(bound, 1) * SEEN], axis=1
-        )
+        total = np.concatenate([costs[:, None] + squares, costs[:, None] + absent], axis=1)
         kept = np.argsort(total, axis=None, kind="stable")[: BEAM if k + 1 < len(order) else PLACES]
         kept = kept[np.isfinite(total.ravel()[kept])]
         row, point = np.divmod(kept, n + 1)
