@@ -97,6 +97,12 @@ def label_through_time(
         given = recognise_rest(state, markers, rate, model, least_confidence)
         if not (changed or given):
             break
+    # by now most markers are one point each: what was exchanged while they were few shows
+    for _ in range(ROUNDS):
+        if not recognise_again(state, markers, model, least_confidence, fixed, lasting=np.inf):
+            break
+        recheck(state, markers, fixed)
+        propagate(state, markers, rate, fixed, kin, late=True)
     return state
 
 
