@@ -133,21 +133,14 @@ def recognise_again(
     model: TopologicalModel,
     least_confidence: float,
     fixed: set[int],
-    *,
-    lasting: float = LASTING,
 ) -> bool:
     """Recognise the body once more: what has a label as one point each, beside long tracks.
 
     They start from the labels they have. A label may go to another point as a whole, and markers
     that the first window did not show come in. Return whether anything changed.
-
-    Parameters
-    ----------
-    lasting
-        Share of the recording that a track without label must last to be looked at.
     """
     held = sorted({label for label in state.labels if label >= 0})
-    least = lasting * len(markers)
+    least = LASTING * len(markers)
     loose = [k for k, of in enumerate(state.labels) if of < 0 and length_of(state, k) >= least]
     points = np.concatenate(
         [state.points[:, held], points_of(markers, [state.tracks[k] for k in loose])], axis=1

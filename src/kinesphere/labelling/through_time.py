@@ -10,6 +10,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from kinesphere.data import Array, TopologicalModel
+from kinesphere.labelling.exchanged import exchange_labels
 from kinesphere.labelling.labelled import Labelled, give
 from kinesphere.labelling.matching import Labeller
 from kinesphere.labelling.personal import recognise_rest
@@ -99,7 +100,7 @@ def label_through_time(
             break
     # by now most markers are one point each: what was exchanged while they were few shows
     for _ in range(ROUNDS):
-        if not recognise_again(state, markers, model, least_confidence, fixed, lasting=np.inf):
+        if not exchange_labels(state, markers, model, least_confidence, fixed):
             break
         recheck(state, markers, fixed)
         propagate(state, markers, rate, fixed, kin, late=True)
