@@ -33,9 +33,7 @@ def exchange_labels(
     kept = {state.labels[k] for k in fixed if state.labels[k] >= 0}
     sure = (match.confidence >= least_confidence) & ~np.isin(held, list(kept))
     into = followed(np.array(held, dtype=np.int64), match.labels, sure)
-    moving = [
-        (k, into[of], state.confidence[k]) for k, of in enumerate(state.labels) if of in into
-    ]
+    moving = [(k, into[of], state.confidence[k]) for k, of in enumerate(state.labels) if of in into]
     for k, _, _ in moving:
         take(state, k)
     for k, label, sure_ in sorted(moving, key=lambda one: (-length_of(state, one[0]), one[0])):
