@@ -161,6 +161,7 @@ def _searched(one: _Tried, search: Callable[[Sketch, Pose], Pose]) -> _Tried:
 
 
 def _with_legs(sketch: Sketch, pose: Pose) -> Pose:
+    pose = with_arms_found(sketch, pose, roughly=True)
     return shaken(sketch, pose, _LARGE, _TRIES, _LOWER)
 
 
