@@ -65,7 +65,8 @@ class _Small:
         found = np.zeros(self.bgr.shape[:2], dtype=np.uint8)
         if len(points) == 0:
             return found > 0
-        depth = float(np.median((points @ self.view.rotation.T + self.view.shift)[:, 2]))
+        depths = points @ self.view.rotation[2] + self.view.shift[2]
+        depth = float(np.median(depths))
         reach = max(1, round(size * self.view.lens[0] * self.scale / max(depth, 0.1)))
         columns, rows = np.nan_to_num(np.rint(self.pixels(points)), nan=-1).astype(int).T
         shown = (rows >= 0) & (rows < found.shape[0]) & (columns >= 0) & (columns < found.shape[1])
@@ -130,14 +131,12 @@ def _common(seen: Sequence[_Small], masks: Sequence[NDArray[np.bool_]], middle: 
         shown = (rows >= 0) & (rows < mask.shape[0]) & (columns >= 0) & (columns < mask.shape[1])
         shown_by += shown
         against[shown] += ~mask[rows[shown], columns[shown]]
-    most = shown_by > 3  # noqa: PLR2004
+    most = shown_by > 3
     allowed = points[(against <= most) & (shown_by - against > 1)]
     return largest_piece_of_space(allowed, _SIDE) if len(allowed) else allowed
 
 
-def _cut(
-    one: _Small, maybe: NDArray[np.bool_], likely: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
+def _cut(one: _Small, maybe: NDArray[np.bool_], likely: NDArray[np.bool_]) -> NDArray[np.bool_]:
     labels = np.full(maybe.shape, cv2.GC_BGD, dtype=np.uint8)
     labels[maybe] = cv2.GC_PR_BGD
     labels[likely] = cv2.GC_PR_FGD
@@ -156,7 +155,7 @@ def _within(one: _Small, middle: Array, cylinder: tuple[float, float, float]) ->
     pixels = one.pixels(np.concatenate([middle + ring + [0, y, 0] for y in (low, high)]))
     found = np.zeros(one.bgr.shape[:2], dtype=np.uint8)
     known = pixels[np.isfinite(pixels).all(axis=1)]
-    if len(known) > 2:  # noqa: PLR2004
+    if len(known) > 2:
         cv2.fillConvexPoly(found, cv2.convexHull(np.rint(known).astype(np.int32)), 1)
     return found > 0
 

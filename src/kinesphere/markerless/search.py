@@ -80,7 +80,10 @@ def with_arms_found(sketch: Sketch, pose: Pose, *, roughly: bool = False) -> Pos
             continue
         limbs = [chain.limb_names.index(name) for name in names]
         worth = sketch.worth_beside(pose, limbs)
-        places = [(worth(p), i, p) for i, p in enumerate(_with(pose, arm_places(chain, pose, side, directions)))]
+        places = [
+            (worth(p), i, p)
+            for i, p in enumerate(_with(pose, arm_places(chain, pose, side, directions)))
+        ]
         places.sort(key=lambda place: (-place[0], place[1]))
         found = []
         for most, i, place in places[:kept]:

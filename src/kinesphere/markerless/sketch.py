@@ -108,9 +108,13 @@ class Sketch:
 
         def worth(other: Pose) -> float:
             skin = self.body.skinned(posed(chain, other))
-            return base - self.strain(other) + sum(
-                worth_kernel(_drawn(view, skin, faces), values)
-                for view, values in zip(self.views, left, strict=True)
+            return (
+                base
+                - self.strain(other)
+                + sum(
+                    worth_kernel(_drawn(view, skin, faces), values)
+                    for view, values in zip(self.views, left, strict=True)
+                )
             )
 
         return worth
