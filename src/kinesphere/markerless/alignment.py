@@ -57,9 +57,7 @@ class _Seen:
     diagonal: float
 
 
-def aligned(
-    cameras: Sequence[Camera], frames: Sequence[Sequence[Mask | None]]
-) -> Alignment | None:
+def aligned(cameras: Sequence[Camera], frames: Sequence[Sequence[Mask | None]]) -> Alignment | None:
     """Return the shifts of cameras with which silhouettes agree best.
 
     Parameters
@@ -75,7 +73,7 @@ def aligned(
     instants = [
         seen
         for masks in frames
-        if len(seen := _instant(cameras, masks)) >= 3  # noqa: PLR2004
+        if len(seen := _instant(cameras, masks)) >= 3
     ]
     if not instants:
         return None
@@ -96,9 +94,7 @@ def aligned(
     return Alignment(shifts, best, before)
 
 
-def moved_cameras(
-    cameras: Sequence[Camera], frames: Sequence[Sequence[Mask | None]]
-) -> list[str]:
+def moved_cameras(cameras: Sequence[Camera], frames: Sequence[Sequence[Mask | None]]) -> list[str]:
     """Return a word for each camera that seems to have been moved, with the line that mends it."""
     found = aligned(cameras, frames)
     if found is None or found.filled - found.filled_before < _CLEARLY:

@@ -62,8 +62,16 @@ def shaken(
     return pose
 
 
-def with_arms_found(sketch: Sketch, pose: Pose) -> Pose:
-    """Return the pose with each arm where it explains most, of all the places it can reach."""
+def with_arms_found(sketch: Sketch, pose: Pose, *, roughly: bool = False) -> Pose:
+    """Return the pose with each arm where it explains most, of all the places it can reach.
+
+    Parameters
+    ----------
+    roughly
+        Of a third of the places, and without a closer look at the best: so that nothing else is
+        turned to explain what is an arm.
+    """
+    directions, kept = (60, 1) if roughly else (180, _KEPT)
     chain = sketch.body.chain
     rng = np.random.default_rng(0)
     for side in ("left", "right"):
@@ -72,11 +80,14 @@ def with_arms_found(sketch: Sketch, pose: Pose) -> Pose:
             continue
         limbs = [chain.limb_names.index(name) for name in names]
         worth = sketch.worth_beside(pose, limbs)
-        places = [(worth(p), i, p) for i, p in enumerate(_with(pose, arm_places(chain, pose, side)))]
+        places = [
+            (worth(p), i, p)
+            for i, p in enumerate(_with(pose, arm_places(chain, pose, side, directions)))
+        ]
         places.sort(key=lambda place: (-place[0], place[1]))
         found = []
-        for most, i, place in places[:_KEPT]:
-            for size in _ARM:
+        for most, i, place in places[:kept]:
+            for size in _ARM[:1] if roughly else _ARM:
                 place, most = _climbed(chain, place, worth, limbs, size, _TRIES, rng)
             found.append((most, -i, place))
         pose = max(found, key=lambda one: one[:2])[2]

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -18,6 +19,8 @@ from kinesphere.markerless.views import View, view_of
 
 _SIDE = 200
 """px, the longer side."""
+_STRAIN = 5.0
+"""nats that a joint costs whose distance from rest is usual for it: about two pixels."""
 _COARSE = 0.045
 """m, about the edges of the triangles drawn there."""
 
@@ -59,12 +62,31 @@ class Sketch:
         return replace(self, body=coarsened(body))
 
     def worth(self, pose: Pose) -> float:
-        """Return how much a pose explains, nats: what it covers of the person less of the rest."""
+        """Return how much a pose explains, nats: what it covers of the person less of the rest.
+
+        Less a little for joints far from rest: it decides where silhouettes do not.
+        """
         points = self.body.skinned(posed(self.body.chain, pose))
-        return sum(
+        return -self.strain(pose) + sum(
             worth_kernel(_drawn(view, points, self.body.faces), values)
             for view, values in zip(self.views, self.values, strict=True)
         )
+
+    @cached_property
+    def _stiffness(self) -> tuple[NDArray[np.intp], Array, Array]:
+        """Return the balls but the root, their stiffness, and that of every degree of freedom."""
+        links, chain = self.body.chain.links, self.body.chain
+        balls = np.array([i for i, link in enumerate(links) if link.kind == "ball"], dtype=np.intp)
+        of_dofs = np.array([links[i].stiffness for i in chain.dof_limbs])
+        return balls, np.array([links[i].stiffness for i in balls]), of_dofs
+
+    def strain(self, pose: Pose) -> float:
+        """Return what a pose's distance from rest costs, nats."""
+        balls, of_balls, of_dofs = self._stiffness
+        cosine = (np.trace(pose.balls[balls], axis1=1, axis2=2) - 1) / 2
+        turned = np.arccos(np.clip(cosine, -1, 1)) / of_balls
+        bent = pose.angles / of_dofs
+        return float(_STRAIN * (turned @ turned + bent @ bent))
 
     def worth_beside(self, pose: Pose, limbs: Sequence[int]) -> Callable[[Pose], float]:
         """Return what tells the worth of poses that differ from one in some limbs alone.
@@ -86,9 +108,13 @@ class Sketch:
 
         def worth(other: Pose) -> float:
             skin = self.body.skinned(posed(chain, other))
-            return base + sum(
-                worth_kernel(_drawn(view, skin, faces), values)
-                for view, values in zip(self.views, left, strict=True)
+            return (
+                base
+                - self.strain(other)
+                + sum(
+                    worth_kernel(_drawn(view, skin, faces), values)
+                    for view, values in zip(self.views, left, strict=True)
+                )
             )
 
         return worth

@@ -117,8 +117,8 @@ def find_start(
     whole = [_searched(one, _with_arms) for one in _best(with_legs)[:_WHOLE]]
     last = [_closely(fitter, surface, model, masks, one, fit=fit) for one in _best(whole)[:_LAST]]
     best = _best(last)[0]
-    sized = with_body(fitter, best.sketch.body)
-    return Start(best.pose, best.logs, overlaps(sized, best.pose, masks))
+    whole_body = with_body(fitter, model(shaped(surface, best.logs)))
+    return Start(best.pose, best.logs, overlaps(whole_body, best.pose, masks))
 
 
 def _best(tried: Iterable[_Tried]) -> list[_Tried]:
@@ -161,6 +161,7 @@ def _searched(one: _Tried, search: Callable[[Sketch, Pose], Pose]) -> _Tried:
 
 
 def _with_legs(sketch: Sketch, pose: Pose) -> Pose:
+    pose = with_arms_found(sketch, pose, roughly=True)
     return shaken(sketch, pose, _LARGE, _TRIES, _LOWER)
 
 
@@ -178,22 +179,25 @@ def _closely(
     fit: bool,
 ) -> _Tried:
     """Return a candidate fitted at full size, and with its proportions if they may change."""
-    pose, logs, sketch = _refined(fitter, one.sketch, one.pose), one.logs, one.sketch
+    logs, sketch = one.logs, one.sketch
+    body = model(shaped(surface, logs))
+    pose = _refined(fitter, body, one.pose)
     for schedule in _SHAPE if fit else ():
         instant = Instant(tuple(masks), pose)
         logs, poses = fit_shape(
             fitter, surface, model, logs, [instant], schedule=schedule, tight=_TIGHT
         )
-        sketch = sketch.with_body(model(shaped(surface, logs)))
-        pose = _refined(fitter, sketch, shaken(sketch, poses[0], _SMALL, _TRIES))
+        body = model(shaped(surface, logs))
+        sketch = sketch.with_body(body)
+        pose = _refined(fitter, body, shaken(sketch, poses[0], _SMALL, _TRIES))
     # where the rest is right to a pixel, arms stand out: once more, wherever they can be
-    pose = _refined(fitter, sketch, _with_arms(sketch, pose))
+    pose = _refined(fitter, body, _with_arms(sketch, pose))
     return _Tried(sketch.worth(pose), pose, logs, sketch)
 
 
-def _refined(fitter: Fitter, sketch: Sketch, pose: Pose) -> Pose:
+def _refined(fitter: Fitter, body: Body, pose: Pose) -> Pose:
     """Return the pose fitted to the rims, unless it explains less then."""
-    sized = with_body(fitter, sketch.body)
+    sized = with_body(fitter, body)
     found = sized.fit(pose, (rest(sized.body.chain, sized.settings, pose),), _FINER)
     before, after = (float(sized.score(p)[0].sum()) for p in (pose, found))
     return found if after >= before else pose
