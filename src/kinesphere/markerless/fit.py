@@ -115,10 +115,11 @@ class Fitter:
         open_line_kernel(rim.pixels, rim.normals, rim.parts, parts.limbs, self.near, step, use)
         probabilities = eye.evidence.samples(rim, use, scale)
         offset, variance, agreement = np.empty(n), np.empty(n), np.empty(n)
+        s = self.settings
         offsets_kernel(
             probabilities,
-            self.settings.steepness,
-            self.settings.trust,
+            s.steepness if scale > 1 else s.fine_steepness,
+            s.trust if scale > 1 else s.fine_trust,
             offset,
             variance,
             agreement,
