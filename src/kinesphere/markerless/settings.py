@@ -42,12 +42,16 @@ class TrackSettings:
     steepness: float = setting(
         1.0, "samples over which that step rises", low=0.1, high=5.0, source=_TRIED
     )
+    fine_trust: float = setting(
+        0.43, "trust at full size", low=0.05, high=0.49, source="Stoiber et al. 2022"
+    )
+    fine_steepness: float = setting(1.0, "steepness at full size", low=0.1, high=5.0, source=_TRIED)
     mask_trust: float = setting(
-        0.49, "the same where masks of every frame are given: these err in places, not pixel by "
-        "pixel", low=0.05, high=0.49, source=_TRIED,
+        0.49, "trust at full size where masks of every frame are given: these err in places, not "
+        "pixel by pixel", low=0.05, high=0.49, source=_TRIED,
     )  # fmt: skip
     mask_steepness: float = setting(
-        0.5, "samples over which their step rises", low=0.1, high=5.0, source=_TRIED
+        0.5, "steepness at full size on given masks", low=0.1, high=5.0, source=_TRIED
     )
     mask_fine: int = setting(
         5, "iterations at full size on given masks", low=0, high=50, source=_TRIED
@@ -158,7 +162,10 @@ class TrackSettings:
     def for_masks(self) -> "TrackSettings":
         """Return what holds where given masks are followed."""
         return replace(
-            self, trust=self.mask_trust, steepness=self.mask_steepness, fine=self.mask_fine
+            self,
+            fine_trust=self.mask_trust,
+            fine_steepness=self.mask_steepness,
+            fine=self.mask_fine,
         )
 
     def __post_init__(self) -> None:
