@@ -5,7 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from kinesphere.geometry.centres import Turning, View, fit_centre
-from kinesphere.geometry.rigid import fit_rigid, fit_shape, into_frame, pose_covariance
+from kinesphere.geometry.pose_errors import pose_covariance
+from kinesphere.geometry.rigid import fit_rigid, fit_shape, into_frame
 from kinesphere.geometry.rotations import rotation_exp
 from kinesphere.geometry.skin import (
     fit_through_skin,

@@ -11,6 +11,7 @@ from typing import Any
 
 from benchmarks.accuracy.bodies.arm import arm_figures
 from benchmarks.accuracy.bodies.cases import ROOT, actor_case, creature_cases, folder, real_cases
+from benchmarks.accuracy.bodies.changes import change_rows
 from benchmarks.accuracy.bodies.cost import Cost, cost_rows, plot
 from benchmarks.accuracy.bodies.functional import functional_rows
 from benchmarks.accuracy.bodies.hiding import hiding_rows
@@ -24,6 +25,8 @@ SECTIONS: dict[str, Callable[[], Any]] = {
     "functional": lambda: [asdict(row) for row in functional_rows()],
     "hiding": lambda: [asdict(row) for row in hiding_rows()],
 }
+CREATURES = 6
+"""Animals, hands, players and pairs of people."""
 
 
 def main() -> int:
@@ -60,17 +63,23 @@ def main() -> int:
     partitions: list[Row] = []
     for row in rows(real_cases()):
         partitions.append(_told(row))
-    for seed in range(3):
-        partitions += [_told(row) for row in rows(creature_cases(seed))]
+    creatures = [creature_cases(seed) for seed in range(CREATURES)]
+    for cases in creatures:
+        partitions += [_told(row) for row in rows(cases)]
     for spoilt in (False, True):
         for seed in range(arguments.actors):
             case = actor_case(seed, spoilt=spoilt)
             partitions += [_told(row) for row in rows([case], centres=True)]
+    quadruped, hand, _, people = creatures[0]
+    lawful = [actor_case(0, spoilt=True), quadruped, hand, people]
+    cmu = [case for case in real_cases() if case.name.startswith("cmu41")]
+    changes = [asdict(row) for row in change_rows(lawful, cmu)]
     costs = cost_rows()
     found = {
         "version": __version__,
         "peer": _peer(),
         "partitions": [asdict(row) for row in partitions],
+        "changes": changes,
         **{name: measure() for name, measure in SECTIONS.items()},
         "cost": [asdict(row) for row in costs],
     }

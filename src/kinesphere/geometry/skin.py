@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from kinesphere.geometry.centre_terms import soft_weights
 from kinesphere.geometry.centre_views import Turning, View
-from kinesphere.geometry.rigid import point_covariance
+from kinesphere.geometry.pose_errors import point_covariance
 from kinesphere.geometry.rotations import hat, mean_rotation, rotation_log
 from kinesphere.geometry.vectors import is_seen, lengths
 

@@ -7,12 +7,11 @@ import numpy as np
 from kinesphere.data import Array, JointModel, TopologicalModel
 from kinesphere.errors import DegenerateMotion
 from kinesphere.geometry.centres import CentreFit, Turning, View, fit_centre
+from kinesphere.geometry.pose_errors import point_covariance, pose_covariance
 from kinesphere.geometry.rigid import (
     RigidFit,
     into_frame,
     out_of_frame,
-    point_covariance,
-    pose_covariance,
 )
 from kinesphere.geometry.rotations import mean_rotation
 from kinesphere.geometry.skin import joint_modes, skin_noise
