@@ -59,6 +59,12 @@ def main() -> int:
         found |= {"version": __version__, **{name: SECTIONS[name]() for name in arguments.only}}
         if "functional" in arguments.only:
             found["peer"] = _peer()
+        if absent := {"partitions", "changes", *SECTIONS, "cost"} - found.keys():
+            print(
+                f"{RESULTS} has no {', '.join(sorted(absent))} to keep: run without --only",
+                file=sys.stderr,
+            )
+            return 2
         return _ended(found, None)
     partitions: list[Row] = []
     for row in rows(real_cases()):
