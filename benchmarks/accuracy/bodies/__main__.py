@@ -26,7 +26,17 @@ def main() -> int:
     """Run every section; write ``skeleton.json``, ``skeleton.md`` and the plot."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--actors", type=int, default=10)
+    parser.add_argument(
+        "--without-peer", action="store_true", help="write the page without the peer's columns"
+    )
     arguments = parser.parse_args()
+    if not _peer() and not arguments.without_peer:
+        print(
+            "the peer biobuddy is not installed here, and the page would lose its columns: "
+            "pip install -e .[bench], in an environment of its own, or --without-peer",
+            file=sys.stderr,
+        )
+        return 2
     if not folder().is_dir():
         print(f"no real recordings at {folder()}; set KINESPHERE_DATA", file=sys.stderr)
         return 2
