@@ -132,7 +132,7 @@ class TestExchanges:
         for change in (-0.4, 0.0, 0.4):
             costs = np.zeros((2, 2, 2, 2), dtype=np.float32)
             kernels.pair_costs(
-                one, at + change, 0.01 * one, one, one, one, at, one, stiller, 3.0, costs
+                one, at + change, 0.01 * one, one, one, one, at, one, stiller, 3.0, -1, costs
             )
             found.append(costs[0, 0, 1, 1])
             assert_array_equal(costs[0, 0, 0], 0)

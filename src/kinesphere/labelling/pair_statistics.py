@@ -163,12 +163,12 @@ def _finished(
     """Try unpaired markers on the other side, then doubt every label."""
     template = layout.template
     for label in np.flatnonzero(layout.twin == np.arange(template.n)):
-        other = problem_of(found, scale, template.with_other_side(int(label), layout.twin))
+        turned = template.with_other_side(int(label), layout.twin)
+        other = problem_of(found, scale, turned, (problem, int(label)))
         if other.energy(labels) < energy - 1e-6:
-            template = template.with_other_side(int(label), layout.twin)
-            problem = other
+            template, problem = turned, other
             labels, energy, rivals = *_refined(problem, labels, layout), []
-    labels, energy, margins = doubt(problem, labels, layout.near, nullable=True)
+    labels, energy, margins = doubt(problem, labels, layout.near, layout.twin, nullable=True)
     return Solved(problem, labels, energy, margins, rivals)
 
 
