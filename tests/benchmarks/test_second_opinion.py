@@ -4,7 +4,6 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-
 from benchmarks.markerless.curves import Panel, curves_svg
 from benchmarks.markerless.second_opinion import Opinions, page, read_mot
 
