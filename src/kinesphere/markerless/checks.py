@@ -4,6 +4,7 @@ import numpy as np
 
 from kinesphere import __version__
 from kinesphere.data import Frame, Mask, Scene, Step
+from kinesphere.markerless.alignment import moved_cameras
 from kinesphere.markerless.consistency import (
     Sight,
     disagreement,
@@ -94,6 +95,8 @@ def check_scene(scene: Scene) -> Step:
         warnings.append(_contradiction(scene, wrong, apart))
         if wrong is not None:
             found[CULPRIT] = scene.cameras[wrong].name
+    if apart > AGREE / 2 * diagonal:
+        warnings += moved_cameras(scene.cameras, some[:: max(1, len(some) - 1)])
     return _step(found, *warnings)
 
 

@@ -91,7 +91,8 @@ def track(
             start, scene.cameras, surface, model, settings, pictures, masks=masks
         )
     logs, pose = start.logs, start.pose
-    fitter = fitter_for(model(shaped(surface, logs)), scene.cameras, settings, masks=masks)
+    following = settings.for_masks() if masks else settings
+    fitter = fitter_for(model(shaped(surface, logs)), scene.cameras, following, masks=masks)
     seconds["start"], clock = perf_counter() - clock, perf_counter()
     if scene.body.fit:
         for i in range(settings.shape_rounds):

@@ -10,10 +10,14 @@ from kinesphere.data import Array, Mask
 from kinesphere.markerless.absence import nobody_seen
 from kinesphere.markerless.contour_fit import ContourFitter
 from kinesphere.markerless.fit import Fitter
-from kinesphere.markerless.pose import Pose
+from kinesphere.markerless.pose import Pose, difference
 from kinesphere.markerless.prediction import expectation, predicted, rest
 from kinesphere.markerless.recovery import Watch, held_lost, recovered
 
+_OPENING = 5
+"""Times the first pose is fitted at most: nobody knows how far off it is."""
+_STILL = 0.005
+"""rad and m; a fit that moves it by less is the last."""
 _LINES = 3
 """Lines along a limb's rim, over all cameras, from which it can be judged."""
 
@@ -51,8 +55,11 @@ class Tracking:
         chain, settings = self.fitter.body.chain, self.fitter.settings
         if self.fitter.open_eyes:
             self._judged(self.last, learn=1.0)
-            priors = (expectation(chain, self.last, settings), rest(chain, settings, self.last))
-            self.last = self.fitter.fit(self.last, priors)
+            for _ in range(_OPENING):
+                priors = (expectation(chain, self.last, settings), rest(chain, settings, self.last))
+                before, self.last = self.last, self.fitter.fit(self.last, priors)
+                if np.abs(difference(chain, before, self.last)).max() < _STILL:
+                    break
         return self._judged(self.last, learn=1.0)
 
     def step(self, pictures: Sequence[NDArray[np.uint8] | None]) -> Found:
