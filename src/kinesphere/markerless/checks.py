@@ -78,6 +78,7 @@ def check_scene(scene: Scene) -> Step:
             f"the person seems {size:.2g} m large; the calibration's unit is wrong, or what moves "
             "is no person"
         )
+        return _step(found, *warnings)  # whatever else seems wrong comes of it
     swap = find_swap(scene.cameras, some)
     if swap is not None and swap.mended > _UNDONE:
         one, other = scene.cameras[swap.first].name, scene.cameras[swap.second].name
@@ -86,7 +87,7 @@ def check_scene(scene: Scene) -> Step:
             f"the images of {one} and {other} seem to be exchanged: the other way round "
             f"{swap.mended:.0%} of the cameras' disagreement would go"
         )
-        return _step(found, *warnings)  # whatever else seems wrong comes of it
+        return _step(found, *warnings)
     told, warning = _lateness(scene)
     found |= told
     warnings += warning
