@@ -70,11 +70,7 @@ def aligned(cameras: Sequence[Camera], frames: Sequence[Sequence[Mask | None]]) 
     Alignment
         None where fewer than three cameras show a silhouette at once: two can always be agreed.
     """
-    instants = [
-        seen
-        for masks in frames
-        if len(seen := _instant(cameras, masks)) >= 3
-    ]
+    instants = [seen for masks in frames if len(seen := _instant(cameras, masks)) >= 3]
     if not instants:
         return None
     shifts = np.zeros((len(cameras), 2))
