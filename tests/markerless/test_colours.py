@@ -5,13 +5,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from kinesphere.markerless.colours import SIDE, Colours, lab_bins
+from kinesphere.markerless.colours import SIDE, Colours, _nearest, lab_bins
 from kinesphere.markerless.eyes import colour_groups
 from kinesphere.markerless.fit import near_limbs
 from kinesphere.markerless.kernels.colour import blurred_kernel
 from kinesphere.markerless.kernels.lines import REACH, SAMPLES
 from kinesphere.markerless.pose import bind_pose, posed
-from kinesphere.markerless.rim import Canvas
+from kinesphere.markerless.rim import Canvas, Parts
 from kinesphere.markerless.views import view_of
 
 
@@ -79,3 +79,45 @@ def test_what_was_learnt_is_recognised(whole, ring):
     assert scores.sum() / counts.sum() > 2
     model, person = colours.person(parts.limbs >= 0)
     assert (model & person).sum() / (model | person).sum() > 0.95
+
+
+@pytest.mark.slow
+def test_ratios_ask_each_pixel_for_the_limb_nearest_to_it(whole, ring):
+    canvas = Canvas(view_of(ring(2)[0], 320), whole, 6)
+    points = whole.skinned(posed(whole.chain, bind_pose(whole.chain)))
+    parts = canvas.draw(points)
+    names = whole.chain.limb_names
+    arm = np.isin(parts.limbs, [names.index(f"left_{b}") for b in ("forearm", "hand")])
+    skin, cloth, room = (200, 140, 120), (60, 90, 160), (90, 90, 90)
+    image = np.full((*parts.limbs.shape, 3), room, dtype=np.uint8)
+    image[parts.limbs >= 0] = cloth
+    image[arm] = skin
+    colours = Colours(colour_groups(names), near_limbs(whole), 0.7)
+    colours.look(image)
+    rim = canvas.rim(points, whole.normals(points), parts)
+    colours.learn(rim, parts, 1.0)
+    ratios = colours.ratios(parts, 20)
+    inside = cv2.erode((parts.limbs >= 0).astype(np.uint8), np.ones((5, 5))) > 0
+    outside = cv2.dilate((parts.limbs >= 0).astype(np.uint8), np.ones((5, 5))) == 0
+    assert np.median(ratios[inside]) > 2
+    near = cv2.dilate((parts.limbs >= 0).astype(np.uint8), np.ones((25, 25))) > 0
+    assert np.median(ratios[outside & near]) < -2
+    far = cv2.dilate((parts.limbs >= 0).astype(np.uint8), np.ones((61, 61))) == 0
+    assert (ratios[far & (np.arange(ratios.shape[0])[:, None] < 2)] == 0).all()
+    # skin beside the trunk is no trunk; beside the forearm it is the arm
+    colours.look(np.full_like(image, skin))
+    by_limb = colours.ratios(parts, 20)
+    trunk = parts.limbs == names.index("trunk")
+    assert np.median(by_limb[arm]) > 2
+    assert np.median(by_limb[trunk & inside]) < 0.5
+    assert (colours.ratios(Parts(np.full_like(parts.limbs, -1), parts.nearness), 20) == 0).all()
+
+
+def test_every_pixel_belongs_to_its_nearest_limb(rng):
+    limbs = np.full((30, 40), -1, dtype=np.int32)
+    limbs[5:9, 5:9], limbs[20:25, 28:35] = 3, 7
+    row, col = np.mgrid[:30, :40]
+    away = [np.hypot(row - limb[0], col - limb[1]) for limb in np.argwhere(limbs >= 0)]
+    owner = limbs[limbs >= 0][np.argmin(away, axis=0)]
+    apart = np.abs(np.min(away[:16], axis=0) - np.min(away[16:], axis=0)) > 1
+    assert np.array_equal(_nearest(limbs)[apart], owner[apart])

@@ -23,7 +23,8 @@ from kinesphere.markerless.views import view_of
 pytestmark = pytest.mark.slow  # in plain Python
 
 ANGLE, JOINT = np.radians(0.7), 3e-3  # what perfect masks must give
-SETTINGS = TrackSettings(coarse=6, middle=6, fine=8)
+SETTINGS = TrackSettings().for_masks()
+TIMES = 5  # as often as a tracker fits its first pose
 
 
 def masks_of(body, pose, cameras):
@@ -38,7 +39,9 @@ def fitted(body, start, cameras, masks, settings=SETTINGS):
     fitter = fitter_for(body, cameras, settings, masks=True)
     for eye, mask in zip(fitter.eyes, masks, strict=True):
         eye.evidence.look(mask)
-    return fitter.fit(start, (expectation(body.chain, start, settings),))
+    for _ in range(TIMES):
+        start = fitter.fit(start, (expectation(body.chain, start, settings),))
+    return start
 
 
 def a_pose(body, seed, spread=0.15):
@@ -61,7 +64,7 @@ def joint_errors(body, found, truth):
     return np.linalg.norm(a.centres - b.centres, axis=1)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 3])
+@pytest.mark.parametrize("seed", range(6))
 def test_the_upper_body_is_found_from_perfect_masks(upper, ring, seed):
     cameras = ring(4, target=(0, 1.2, 0))
     truth = a_pose(upper, seed)
@@ -109,11 +112,7 @@ def test_a_turned_scene_gives_the_turned_pose(upper, ring):
 
     one = taken(fitted(upper, start, cameras, masks))
     other = fitted(upper, taken(start), there, masks)
-    # pixels on an edge fall to either side by rounding, and steps are damped about other axes;
-    # a wrist is turned by a handful of pixels
-    apart = joint_errors(upper, one, other)
-    assert np.median(apart) < 0.5e-3
-    assert apart.max() < 4e-3
+    assert joint_errors(upper, one, other).max() < 1e-6
 
 
 def test_a_camera_without_image_is_left_out(upper, ring):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from kinesphere.markerless.kernels.levelset import contour_kernel, evolve_kernel
+from kinesphere.markerless.kernels.levelset import contour_kernel, evolve_kernel, ratios_kernel
 from kinesphere.markerless.kernels.votes import vote_kernel
 from kinesphere.markerless.levelset import (
     features_of,
@@ -62,12 +62,46 @@ def test_the_shape_term_holds_a_contour_that_the_image_pulls_away(rng):
     assert overlap(held, person) > overlap(free, person) + 0.05
 
 
+def test_given_ratios_stand_in_for_estimated_densities(rng):
+    truth, start = disc(75, 60, 25), disc(82, 55, 22)
+    misleading = picture(start, rng)  # the image itself would hold the contour where it is
+    ratios = np.where(truth, 3.0, -3.0).astype(np.float32)
+    settings = TrackSettings(method="coupled", rounds=8)
+    found = segment(misleading, start, settings, known=ratios)
+    assert overlap(mask_of(found, truth), truth) > 0.97
+    assert overlap(mask_of(segment(misleading, start, settings), truth), start) > 0.9
+
+
+def test_a_coarse_contour_goes_farther_in_as_many_steps(rng):
+    truth, start = disc(70, 60, 40), disc(70, 60, 15)
+    ratios = np.where(truth, 3.0, -3.0).astype(np.float32)
+    settings = TrackSettings(method="coupled")
+    image = picture(truth, rng)
+    reached = [
+        overlap(mask_of(segment(image, start, settings, known=ratios, scale=s), truth), truth)
+        for s in (1, 2, 4)
+    ]
+    assert reached[0] < 0.4
+    assert reached[1] > reached[0] + 0.05
+    assert reached[2] > reached[1] + 0.2
+
+
+def test_ratios_are_the_sum_over_features_within_the_band(rng):
+    features = rng.integers(0, 256, (20, 30, 3)).astype(np.uint8)
+    phi = rng.uniform(-16, 16, (20, 30)).astype(np.float32)
+    table = rng.normal(size=(3, 256))
+    force = np.full((20, 30), 7.0, dtype=np.float32)
+    ratios_kernel(features, phi, table, 8.0, force)
+    wanted = sum(table[k][features[..., k]] for k in range(3))
+    assert_allclose(force, np.where(np.abs(phi) < 8, wanted, 7.0), rtol=1e-6)
+
+
 def test_length_shortens_a_contour_where_nothing_else_acts():
     mask = disc(75, 60, 25)
     mask[58:62, 95:125] = True  # a thorn
     phi = signed_distance(mask.astype(np.uint8))
-    flat = np.zeros((H, W, 1), dtype=np.uint8)
-    args = (np.zeros((1, 256)), 4.0, 0.0, phi.copy(), False, 2.0, 8.0, 0.7, 150)
+    flat = np.zeros((H, W), dtype=np.float32)
+    args = (4.0, 0.0, phi.copy(), False, 2.0, 8.0, 0.7, 150)
     before = (phi > 0)[:, 100:].sum()
     evolve_kernel(phi, flat, *args)
     assert (phi > 0)[:, 100:].sum() < 0.5 * before

@@ -24,6 +24,59 @@ def _cross(pixels: Array, a: int, b: int, c: int) -> float:
 
 
 @kernel
+def _from_top(pixels: Array, a: int, b: int, c: int) -> tuple[int, int, int]:
+    """Return the corners from the uppermost to the lowest."""
+    if pixels[a, 1] > pixels[b, 1]:
+        a, b = b, a
+    if pixels[b, 1] > pixels[c, 1]:
+        b, c = c, b
+        if pixels[a, 1] > pixels[b, 1]:
+            a, b = b, a
+    return a, b, c
+
+
+@kernel
+def _rows(pixels: Array, a: int, c: int, height: int) -> tuple[int, int]:
+    """Return the first row that a triangle covers and the one after the last."""
+    top, bottom = pixels[a, 1], pixels[c, 1]
+    if not (bottom >= 0.0 and top <= height - 1.0):
+        return 0, 0
+    return int(max(0.0, math.ceil(top))), int(min(height - 1.0, math.floor(bottom))) + 1
+
+
+@kernel
+def _slopes(pixels: Array, a: int, b: int, c: int) -> tuple[float, float, float]:
+    """Return columns a row along the edges from the top to the bottom, the middle, and thence."""
+    x0, y0 = pixels[a, 0], pixels[a, 1]
+    x1, y1 = pixels[b, 0], pixels[b, 1]
+    x2, y2 = pixels[c, 0], pixels[c, 1]
+    upper = (x1 - x0) / (y1 - y0) if y1 > y0 else 0.0
+    lower = (x2 - x1) / (y2 - y1) if y2 > y1 else 0.0
+    return (x2 - x0) / (y2 - y0), upper, lower
+
+
+@kernel
+def _columns(
+    pixels: Array, a: int, b: int, c: int, slopes: tuple[float, float, float], row: int, width: int
+) -> tuple[int, int]:
+    """Return the first column that a triangle covers in a row and the one after the last.
+
+    The corners come from the top; every edge is followed from its upper end.
+    """
+    long, upper, lower = slopes
+    from_a, from_b = row - pixels[a, 1], row - pixels[b, 1]
+    one = pixels[a, 0] + from_a * long
+    if from_b < 0.0 or pixels[c, 1] <= pixels[b, 1]:
+        other = pixels[a, 0] + from_a * upper
+    else:
+        other = pixels[b, 0] + from_b * lower
+    left, right = min(one, other), max(one, other)
+    if not (left <= width - 1 and right >= 0):
+        return 0, 0
+    return max(0, math.ceil(left)), min(width - 1, math.floor(right)) + 1
+
+
+@kernel
 def silhouette_kernel(
     pixels: Array, faces: NDArray[np.int32], cull: bool, mask: NDArray[np.bool_]
 ) -> None:
@@ -46,28 +99,13 @@ def silhouette_kernel(
         # y points down on the screen: what faces the camera turns the other way there
         if not (turn < 0.0 or (turn > 0.0 and not cull)):
             continue
-        if pixels[a, 1] > pixels[b, 1]:
-            a, b = b, a
-        if pixels[b, 1] > pixels[c, 1]:
-            b, c = c, b
-            if pixels[a, 1] > pixels[b, 1]:
-                a, b = b, a
-        x0, y0 = pixels[a, 0], pixels[a, 1]
-        x1, y1 = pixels[b, 0], pixels[b, 1]
-        y2 = pixels[c, 1]
-        first, last = max(0.0, math.ceil(y0)), min(height - 1.0, math.floor(y2))
-        if first > last:
-            continue
-        long = (pixels[c, 0] - x0) / (y2 - y0)
-        upper = (x1 - x0) / (y1 - y0) if y1 > y0 else 0.0
-        lower = (pixels[c, 0] - x1) / (y2 - y1) if y2 > y1 else 0.0
-        for row in range(int(first), int(last) + 1):
-            one = x0 + (row - y0) * long
-            other = x0 + (row - y0) * upper if row < y1 or y2 <= y1 else x1 + (row - y1) * lower
-            left, right = min(one, other), max(one, other)
-            if left <= width - 1 and right >= 0:
-                for col in range(max(0, math.ceil(left)), min(width - 1, math.floor(right)) + 1):
-                    mask[row, col] = True
+        a, b, c = _from_top(pixels, a, b, c)
+        first, last = _rows(pixels, a, c, height)
+        slopes = _slopes(pixels, a, b, c)
+        for row in range(first, last):
+            begin, end = _columns(pixels, a, b, c, slopes, row, width)
+            for col in range(begin, end):
+                mask[row, col] = True
 
 
 @kernel
@@ -99,35 +137,23 @@ def visible_faces_kernel(
         turn = _cross(pixels, a, b, c)
         if not (turn < 0.0 or (turn > 0.0 and not cull)):
             continue
-        if pixels[a, 1] > pixels[b, 1]:
-            a, b = b, a
-        if pixels[b, 1] > pixels[c, 1]:
-            b, c = c, b
-            if pixels[a, 1] > pixels[b, 1]:
-                a, b = b, a
+        a, b, c = _from_top(pixels, a, b, c)
         x0, y0 = pixels[a, 0], pixels[a, 1]
         x1, y1 = pixels[b, 0], pixels[b, 1]
         x2, y2 = pixels[c, 0], pixels[c, 1]
-        first, last = max(0.0, math.ceil(y0)), min(height - 1.0, math.floor(y2))
-        if first > last:
+        first, last = _rows(pixels, a, c, height)
+        if first >= last:
             continue
         w0 = 1.0 / depths[a]
         dw1, dw2 = 1.0 / depths[b] - w0, 1.0 / depths[c] - w0
         area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
         along_x = (dw1 * (y2 - y0) - dw2 * (y1 - y0)) / area
         along_y = (dw2 * (x1 - x0) - dw1 * (x2 - x0)) / area
-        long = (x2 - x0) / (y2 - y0)
-        upper = (x1 - x0) / (y1 - y0) if y1 > y0 else 0.0
-        lower = (x2 - x1) / (y2 - y1) if y2 > y1 else 0.0
-        for row in range(int(first), int(last) + 1):
-            one = x0 + (row - y0) * long
-            other = x0 + (row - y0) * upper if row < y1 or y2 <= y1 else x1 + (row - y1) * lower
-            left, right = min(one, other), max(one, other)
-            if not (left <= width - 1 and right >= 0):
-                continue
-            begin, end = max(0, math.ceil(left)), min(width - 1, math.floor(right))
+        slopes = _slopes(pixels, a, b, c)
+        for row in range(first, last):
+            begin, end = _columns(pixels, a, b, c, slopes, row, width)
             near = w0 + (row - y0) * along_y + (begin - x0) * along_x
-            for col in range(begin, end + 1):
+            for col in range(begin, end):
                 if near > nearness[row, col]:
                     nearness[row, col] = near
                     face_ids[row, col] = f

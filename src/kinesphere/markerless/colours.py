@@ -14,8 +14,10 @@ from kinesphere.markerless.kernels.colour import (
     colour_samples_kernel,
     count_far_kernel,
     count_lines_kernel,
+    log_ratios_kernel,
     region_score_kernel,
 )
+from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.kernels.lines import SAMPLES
 from kinesphere.markerless.rim import Parts, Rim, around
 
@@ -87,6 +89,28 @@ class Colours:
         )
         return out
 
+    def ratios(self, parts: Parts, reach: int) -> NDArray[np.float32]:
+        """Return how much likelier each pixel near the model is the person's."""
+        out = np.zeros(parts.limbs.shape, dtype=np.float32)
+        box = around(parts.limbs != NOWHERE, reach)
+        if box is None:
+            return out
+        limbs, near, far = self._densities
+        ratios = np.empty_like(out[box])
+        log_ratios_kernel(
+            _nearest(parts.limbs[box]),
+            np.ascontiguousarray(self._levels[1][box]),
+            lab_bins(),
+            self._groups,
+            limbs,
+            near,
+            far[0],
+            self._local,
+            ratios,
+        )
+        out[box] = cv2.blur(ratios, (3, 3))  # single pixels err
+        return out
+
     def learn(self, rim: Rim, parts: Parts, rate: float) -> None:
         """Mix the colours of the present pose into those known."""
         fresh = [np.zeros_like(counts) for counts in self._counts]
@@ -152,3 +176,14 @@ class Colours:
         ground = 0.5 * (near * beside).sum(axis=0) / max(1, beside.sum()) + 0.5 * far[0]
         ratio = np.log((person + FLOOR) / (ground + FLOOR)).astype(np.float32)
         return model[grid], np.asarray(cv2.blur(ratio[bins], (3, 3)) > 0)
+
+
+def _nearest(limbs: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return the limb nearest to each pixel of an image of limbs."""
+    shown = limbs != NOWHERE
+    _, labels = cv2.distanceTransformWithLabels(
+        (~shown).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    owner = np.full(int(labels.max()) + 1, NOWHERE, dtype=np.int32)
+    owner[labels[shown]] = limbs[shown]
+    return np.asarray(owner[labels])

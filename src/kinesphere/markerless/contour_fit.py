@@ -57,30 +57,39 @@ class ContourFitter:
         """
         s = self.fitter.settings
         coupled = s.method == "coupled" and not self.masks
+        by_limb = coupled and s.densities == "limbs"
         rounds = s.alternations if coupled else 1
         self.silhouettes[:] = [None] * len(self.pictures)
         for i in range(rounds):
-            contours = self._contours(pose, s.shape if coupled else 0.0)
+            scale = 2 ** (rounds - 1 - i)
+            contours = self._contours(pose, s.shape if coupled else 0.0, scale, by_limb)
             iterations = max(1, s.contour_iterations // rounds)
             for k in range(iterations):
                 radius = s.radius / (1 + i * iterations + k) ** 0.5
-                pose, step = self._step(pose, contours, priors, radius, draw=k % _DRAWN == 0)
+                pose, step = self._step(
+                    pose, contours, priors, radius, scale if by_limb else None, k % _DRAWN == 0
+                )
                 if step < 1e-4:
                     break
         return pose
 
-    def _contours(self, pose: Pose, shape: float) -> list[Contour | None]:
+    def _contours(
+        self, pose: Pose, shape: float, scale: int, by_limb: bool
+    ) -> list[Contour | None]:
         contours: list[Contour | None] = []
+        s = self.fitter.settings
         points = self.fitter.body.skinned(posed(self.fitter.body.chain, pose))
         for i, (eye, picture) in enumerate(zip(self.fitter.eyes, self.pictures, strict=True)):
-            model = eye.canvas.draw(points).limbs != NOWHERE
+            parts = eye.canvas.draw(points)
+            model = parts.limbs != NOWHERE
             if picture is None:
                 found = None
             elif self.masks:
                 box = around(picture > 127, 4)
                 found = None if box is None else cropped(from_mask(picture), box)
             else:
-                found = segment(picture, model, self.fitter.settings, self.silhouettes[i], shape)
+                known = eye.evidence.ratios(parts, s.margin) if by_limb else None
+                found = segment(picture, model, s, self.silhouettes[i], shape, known, scale)
             self.silhouettes[i] = found
             contours.append(None if found is None else _contour(found, eye.canvas.view, 3))
         return contours
@@ -91,6 +100,7 @@ class ContourFitter:
         contours: list[Contour | None],
         priors: tuple[Prior, ...],
         radius: float,
+        inner: int | None,
         draw: bool,
     ) -> tuple[Pose, float]:
         body, s = self.fitter.body, self.fitter.settings
@@ -102,11 +112,15 @@ class ContourFitter:
             if contour is None or len(contour.points) == 0:
                 continue
             parts = eye.canvas.draw(points) if draw else eye.canvas.drawn
-            rim = eye.canvas.rim(points, normals, parts)
-            which, targets, outward = matches(contour, rim, radius)
+            whole = eye.canvas.rim(points, normals, parts)
+            if inner is not None:
+                before_another = _part(whole, np.flatnonzero(whole.parts[:, 1] != NOWHERE))
+                if len(before_another.shares):
+                    self.fitter.add_lines(eye, at, points, before_another, parts, inner, equations)
+            which, targets, outward = matches(contour, whole, radius)
             if len(which) == 0:
                 continue
-            rim = Rim(*(array[which] for array in vars(rim).values()))
+            rim = _part(whole, which)
             add = _add_plucker if s.equations == "plucker" else _add_image
             add(self.fitter, eye, at, rim, targets, outward, equations)
         return solve_step(body.chain, pose, equations, priors, _DAMPING)
@@ -151,6 +165,10 @@ def _voted(
     if len(limbs):
         vote_kernel(points, normals, rim_pixels, rim_normals, limbs, radius, AGREE, match, far)
     return match, far
+
+
+def _part(rim: Rim, which: NDArray[np.intp]) -> Rim:
+    return Rim(*(array[which] for array in vars(rim).values()))
 
 
 def _contour(silhouette: Silhouette, view: View, spacing: int) -> Contour:

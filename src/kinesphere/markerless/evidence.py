@@ -28,6 +28,12 @@ class Evidence(Protocol):
     def samples(self, rim: Rim, use: NDArray[np.int8], scale: int) -> Array:
         """Return how likely samples across the rim are the person's, (n, SAMPLES)."""
 
+    def ratios(self, parts: Parts, reach: int) -> NDArray[np.float32]:
+        """Return how much likelier each pixel is the person's, (height, width) in nats.
+
+        Asked for the limb nearest to it, up to ``reach`` px from the model.
+        """
+
     def learn(self, rim: Rim, parts: Parts, rate: float) -> None:
         """Take the present pose as true, as far as ``rate`` (0 to 1) goes."""
 

@@ -10,7 +10,7 @@ from kinesphere.data import Array
 from kinesphere.markerless.body import Body
 from kinesphere.markerless.evidence import Evidence
 from kinesphere.markerless.kernels.lines import SAMPLES, offsets_kernel, open_line_kernel
-from kinesphere.markerless.pose import Pose, posed
+from kinesphere.markerless.pose import Pose, Posed, posed
 from kinesphere.markerless.rim import Canvas, Parts, Rim, derivatives, image_directions
 from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.solver import Normals, Prior, solve_step
@@ -82,17 +82,30 @@ class Fitter:
                     rim = eye.canvas.rim(points, normals, parts)
                     if len(rim.shares) == 0:
                         continue
-                    offset, variance, agreement = self.edges(eye, rim, parts, scale)
-                    weight = np.isfinite(agreement) / (variance + _FLOOR)
-                    weight *= s.data_weight / (1 + (offset / _FAR) ** 2)
-                    on_rim = _between(points, rim)
-                    directions = image_directions(eye.canvas.view, on_rim, rim.normals)[:, None]
-                    _, rows = derivatives(self.body, at, rim.pairs, rim.shares, directions)
-                    equations.add(rows[:, 0], offset * scale, weight / scale**2)
+                    self.add_lines(eye, at, points, rim, parts, scale, equations)
                 pose, step = solve_step(self.body.chain, pose, equations, priors, _DAMPING)
                 if step < 1e-4:
                     break
         return pose
+
+    def add_lines(
+        self,
+        eye: Eye,
+        at: Posed,
+        points: Array,
+        rim: Rim,
+        parts: Parts,
+        scale: int,
+        equations: Normals,
+    ) -> None:
+        """Add, for each point of a rim, how far across it the image has the edge."""
+        offset, variance, agreement = self.edges(eye, rim, parts, scale)
+        weight = np.isfinite(agreement) / (variance + _FLOOR)
+        weight *= self.settings.data_weight / (1 + (offset / _FAR) ** 2)
+        on_rim = _between(points, rim)
+        directions = image_directions(eye.canvas.view, on_rim, rim.normals)[:, None]
+        _, rows = derivatives(self.body, at, rim.pairs, rim.shares, directions)
+        equations.add(rows[:, 0], offset * scale, weight / scale**2)
 
     def edges(self, eye: Eye, rim: Rim, parts: Parts, scale: int) -> tuple[Array, Array, Array]:
         """Return where the image has the edge: offsets and variances in samples, agreement."""
@@ -102,10 +115,11 @@ class Fitter:
         open_line_kernel(rim.pixels, rim.normals, rim.parts, parts.limbs, self.near, step, use)
         probabilities = eye.evidence.samples(rim, use, scale)
         offset, variance, agreement = np.empty(n), np.empty(n), np.empty(n)
+        s = self.settings
         offsets_kernel(
             probabilities,
-            self.settings.steepness,
-            self.settings.trust,
+            s.steepness if scale > 1 else s.fine_steepness,
+            s.trust if scale > 1 else s.fine_trust,
             offset,
             variance,
             agreement,

@@ -4,13 +4,18 @@ Equation 1 is meant with the length's sign turned: as printed it would reward le
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array
-from kinesphere.markerless.kernels.levelset import evolve_kernel, region_counts_kernel
+from kinesphere.markerless.kernels.levelset import (
+    evolve_kernel,
+    ratios_kernel,
+    region_counts_kernel,
+)
 from kinesphere.markerless.rim import around
 from kinesphere.markerless.settings import TrackSettings
 
@@ -18,6 +23,8 @@ Phi = NDArray[np.float32]
 
 _FLOOR = 1e-4
 """Density that every value has at least: nothing is impossible."""
+_BAND = 8.0
+"""px to either side of the contour in which it moves."""
 _FAR = 60.0
 """px; Φ goes no farther: beyond the band only its sign counts."""
 
@@ -66,6 +73,8 @@ def segment(
     settings: TrackSettings,
     start: Silhouette | None = None,
     shape: float = 0.0,
+    known: Phi | None = None,
+    scale: int = 1,
 ) -> Silhouette | None:
     """Return the person's silhouette in an image, started from the projected model.
 
@@ -78,6 +87,10 @@ def segment(
         A silhouette of the same image to go on from instead.
     shape
         λ of equations 3 and 4, 0 for none.
+    known : (height, width)
+        log p₁/p₂ of each pixel near the model, in place of densities estimated from the image.
+    scale
+        How many times smaller than the view the contour moves: coarse, it reaches farther.
 
     Returns
     -------
@@ -93,27 +106,44 @@ def segment(
             return None
         rows, cols = box
     prior = signed_distance(np.ascontiguousarray(model[rows, cols]).astype(np.uint8))
-    phi = prior.copy() if start is None else start.phi.copy()
-    features = features_of(np.ascontiguousarray(picture[rows, cols]), settings.features)
-    counts = np.empty((2, features.shape[2], 256))
+    size = prior.shape[1], prior.shape[0]
+    prior = _smaller(prior, scale) / np.float32(scale)
+    phi = prior.copy() if start is None else _smaller(start.phi, scale) / np.float32(scale)
+    if known is None:
+        small = _smaller(np.ascontiguousarray(picture[rows, cols]), scale)
+        features = features_of(small, settings.features)
+        counts, force = np.empty((2, features.shape[2], 256)), np.zeros_like(phi)
+    else:
+        force = _smaller(np.ascontiguousarray(known[rows, cols]), scale)
     for i in range(settings.rounds):
-        region_counts_kernel(features, phi, counts)
+        if known is None:
+            region_counts_kernel(features, phi, counts)
+            ratios_kernel(features, phi, _ratios(counts, settings.blur), _BAND, force)
         evolve_kernel(
             phi,
-            features,
-            _ratios(counts, settings.blur),
+            force,
             settings.length,
             shape,
             prior,
             settings.shape_term == "inside",
             2.0,
-            8.0,
+            _BAND,
             0.7,
             settings.evolution,
         )
         if i % 2:
             phi = signed_distance((phi > 0).astype(np.uint8)) if i + 1 < settings.rounds else phi
+    if scale > 1:
+        phi = cv2.resize(phi, size, interpolation=cv2.INTER_LINEAR) * np.float32(scale)
     return Silhouette(phi, cols.start, rows.start)
+
+
+def _smaller(image: Any, scale: int) -> Any:
+    if scale == 1:
+        return image.copy()
+    h, w = image.shape[:2]
+    size = max(2, round(w / scale)), max(2, round(h / scale))
+    return np.ascontiguousarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA))
 
 
 def mask_of(silhouette: Silhouette, like: NDArray[np.bool_]) -> NDArray[np.bool_]:

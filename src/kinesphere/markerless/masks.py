@@ -6,8 +6,9 @@ from numpy.typing import NDArray
 from kinesphere.data import Array, Mask
 from kinesphere.markerless.evidence import MOST, STRIDE, Levels
 from kinesphere.markerless.kernels.colour import mask_score_kernel
+from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.kernels.lines import SAMPLES, mask_samples_kernel
-from kinesphere.markerless.rim import Parts, Rim
+from kinesphere.markerless.rim import Parts, Rim, around
 
 _NOTHING = np.zeros((2, 2), dtype=np.uint8)
 
@@ -35,6 +36,15 @@ class Masks:
         out = np.empty((len(use), SAMPLES))
         level = self._levels[scale]
         mask_samples_kernel(rim.pixels, rim.normals, use, level, float(scale), float(scale), out)
+        return out
+
+    def ratios(self, parts: Parts, reach: int) -> NDArray[np.float32]:
+        """Return how much likelier each pixel is the person's."""
+        mask = self._levels[1]
+        out = np.zeros(mask.shape, dtype=np.float32)
+        if (box := around(parts.limbs != NOWHERE, reach)) is not None:
+            p = 0.02 + 0.96 * mask[box].astype(np.float32) / 255
+            out[box] = np.log(p / (1 - p))
         return out
 
     def learn(self, rim: Rim, parts: Parts, rate: float) -> None:

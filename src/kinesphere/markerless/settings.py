@@ -1,6 +1,6 @@
 """Every choice of the tracker, with its unit, range and source."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from kinesphere.data import check_settings, setting
 
@@ -41,6 +41,20 @@ class TrackSettings:
     )
     steepness: float = setting(
         1.0, "samples over which that step rises", low=0.1, high=5.0, source=_TRIED
+    )
+    fine_trust: float = setting(
+        0.43, "trust at full size", low=0.05, high=0.49, source="Stoiber et al. 2022"
+    )
+    fine_steepness: float = setting(1.0, "steepness at full size", low=0.1, high=5.0, source=_TRIED)
+    mask_trust: float = setting(
+        0.49, "trust at full size where masks of every frame are given: these err in places, not "
+        "pixel by pixel", low=0.05, high=0.49, source=_TRIED,
+    )  # fmt: skip
+    mask_steepness: float = setting(
+        0.5, "steepness at full size on given masks", low=0.1, high=5.0, source=_TRIED
+    )
+    mask_fine: int = setting(
+        5, "iterations at full size on given masks", low=0, high=50, source=_TRIED
     )
     local: float = setting(
         0.7, "share of the surroundings in the background's colours", low=0.0, high=1.0,
@@ -103,6 +117,14 @@ class TrackSettings:
         choices=("grey", "colour", "texture"),
         source=f"{_PAPER}, 2.1",
     )
+    densities: str = setting(
+        "limbs",
+        "what the coupled method tells person and background apart by: the colours of each limb "
+        "and of what lies beside it, learnt from pose to pose; or features of the two regions as a "
+        "whole, estimated anew in each image, as the plain level set does",
+        choices=("limbs", "regions"),
+        source=f"regions: {_PAPER}, 2.1; limbs: {_TRIED}",
+    )
     blur: float = setting(
         3.0, "K_σ that smooths the level set's histograms of 256 values", low=0.5, high=50.0,
         source=f"{_PAPER}, 2.1, which gives no value; {_TRIED}",
@@ -136,6 +158,15 @@ class TrackSettings:
     radius: float = setting(
         30.0, "how far a contour point may be from the rim at first", unit="px", low=1.0, high=500.0
     )
+
+    def for_masks(self) -> "TrackSettings":
+        """Return what holds where given masks are followed."""
+        return replace(
+            self,
+            fine_trust=self.mask_trust,
+            fine_steepness=self.mask_steepness,
+            fine=self.mask_fine,
+        )
 
     def __post_init__(self) -> None:
         check_settings(self)

@@ -90,6 +90,43 @@ def colour_samples_kernel(
 
 
 @kernel
+def log_ratios_kernel(
+    owners: Ints,
+    level: Image,
+    bins: Bins,
+    groups: Ints,
+    limbs: NDArray[np.float32],
+    near: NDArray[np.float32],
+    far: NDArray[np.float32],
+    local: float,
+    ratios: NDArray[np.float32],
+) -> None:
+    """Write how much likelier each pixel is its limb's than the background's, in nats.
+
+    Parameters
+    ----------
+    owners : (height, width)
+        The limb a pixel is asked for; NOWHERE for none.
+    level, bins, groups, limbs, near, far, local
+        As in `colour_samples_kernel`.
+    ratios : (height, width)
+        Written; 0 where no limb is asked for.
+    """
+    table = np.empty(limbs.shape, dtype=np.float32)
+    for g in range(limbs.shape[0]):
+        for b in range(limbs.shape[1]):
+            outside = local * near[g, b] + (1.0 - local) * far[b] + FLOOR
+            table[g, b] = np.log((limbs[g, b] + FLOOR) / outside)
+    height, width = owners.shape
+    for row in range(height):
+        for col in range(width):
+            limb = owners[row, col]
+            ratios[row, col] = 0.0
+            if limb != NOWHERE:
+                ratios[row, col] = table[groups[limb], _bin(level, row, col, bins)]
+
+
+@kernel
 def count_lines_kernel(
     pixels: Array,
     normals: Array,

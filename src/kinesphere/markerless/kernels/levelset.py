@@ -33,10 +33,34 @@ def region_counts_kernel(features: Image, phi: Phi, counts: Array) -> None:
 
 
 @kernel
+def ratios_kernel(features: Image, phi: Phi, ratios: Array, band: float, force: Phi) -> None:
+    """Write how much likelier each pixel near the contour is the person's, in nats.
+
+    Parameters
+    ----------
+    features, phi
+        As in `region_counts_kernel`.
+    ratios : (n_features, 256)
+        log p₁/p₂ of each value of each feature; features count as independent.
+    band
+        px to either side of the contour.
+    force : (height, width)
+        Written within the band.
+    """
+    height, width, n = features.shape
+    for row in range(height):
+        for col in range(width):
+            if abs(phi[row, col]) < band:
+                ratio = 0.0
+                for k in range(n):
+                    ratio += ratios[k, features[row, col, k]]
+                force[row, col] = ratio
+
+
+@kernel
 def evolve_kernel(
     phi: Phi,
-    features: Image,
-    ratios: Array,
+    force: Phi,
     length: float,
     shape: float,
     prior: Phi,
@@ -55,9 +79,8 @@ def evolve_kernel(
     ----------
     phi : (height, width) px
         Positive inside. Changed.
-    features : (height, width, n_features)
-    ratios : (n_features, 256)
-        log p₁/p₂ of each value of each feature.
+    force : (height, width)
+        log p₁/p₂ of each pixel of the band.
     length
         ν, weight of the contour's length.
     shape
@@ -75,24 +98,21 @@ def evolve_kernel(
     float
         Mean change of Φ in the last step, in px, over the band.
     """
-    height, width, n = features.shape
+    height, width = phi.shape
     count = 0
     for row in range(1, height - 1):
         for col in range(1, width - 1):
             if abs(phi[row, col]) < band:
                 count += 1
     where = np.empty((count, 2), dtype=np.int32)
-    force = np.empty(count)
+    pull = np.empty(count)
     at = 0
     for row in range(1, height - 1):
         for col in range(1, width - 1):
             if abs(phi[row, col]) < band:
                 where[at, 0] = row
                 where[at, 1] = col
-                ratio = 0.0
-                for k in range(n):
-                    ratio += ratios[k, features[row, col, k]]
-                force[at] = min(max(ratio, -_MOST), _MOST)
+                pull[at] = min(max(force[row, col], -_MOST), _MOST)
                 at += 1
     change = np.empty(count)
     delta_0 = 1.0 / (width_px * np.sqrt(2.0 * np.pi))
@@ -118,9 +138,9 @@ def evolve_kernel(
             delta = delta_0 * np.exp(-0.5 * (c / width_px) ** 2)
             to_prior = 2.0 * shape * (prior[row, col] - c)
             if inside_delta:
-                change[i] = rate * delta * (force[i] + length * curvature + to_prior)
+                change[i] = rate * delta * (pull[i] + length * curvature + to_prior)
             else:
-                change[i] = rate * (delta * (force[i] + length * curvature) + to_prior)
+                change[i] = rate * (delta * (pull[i] + length * curvature) + to_prior)
         for i in range(count):
             phi[where[i, 0], where[i, 1]] += change[i]
             moved += abs(change[i])
