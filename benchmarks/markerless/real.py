@@ -44,6 +44,8 @@ class RealOutcome:
     name: str
     overlap: float = float("nan")
     """With the masks that came with it."""
+    overlap_of_all: float = float("nan")
+    """The same with specks and all, where only the largest piece of each mask counts."""
     wrists_near: float = float("nan")
     """Share of the frames in which both wrists lie within ``NEAR`` of the keypoint solution."""
     n_frames: int = 0
@@ -127,7 +129,9 @@ def parsec(name: str, folder: Path, data: Path = DATA) -> RealOutcome:
         tracked = track(scene, bundled_body())
     except KinesphereError as error:
         return RealOutcome(name, overlap_wanted=0.8, failed=str(error))
-    return replace(_outcome(name, scene, tracked, float("nan"), pieces=True), overlap_wanted=0.8)
+    whole = _outcome(name, scene, tracked, float("nan"))
+    person = _outcome(name, scene, tracked, float("nan"), pieces=True)
+    return replace(person, overlap_of_all=whole.overlap, overlap_wanted=0.8)
 
 
 def _outcome(

@@ -152,7 +152,9 @@ def _filled(instants: Sequence[dict[int, _Seen]], shifts: Array) -> float:
 
 def _looked_up(mask: Mask, pixels: Array) -> Mask:
     """Return whether each pixel, (n, 2), is in the mask; False outside the image."""
-    columns, rows = np.nan_to_num(np.rint(pixels), nan=-1).astype(int).T
+    # beside a camera, or behind it, a point may be projected as far away as numbers go
+    known = np.nan_to_num(np.rint(pixels), nan=-1, posinf=-1, neginf=-1)
+    columns, rows = np.clip(known, -1, 1e6).astype(int).T
     height, width = mask.shape
     shown = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
     found = np.zeros(len(pixels), dtype=bool)

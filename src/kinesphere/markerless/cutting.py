@@ -60,16 +60,22 @@ class _Small:
         project_kernel(points, view.rotation, view.shift, view.lens, pixels, depths)
         return (pixels + 0.5) * self.scale - 0.5
 
+    def nearest(self, points: Array) -> NDArray[np.intp]:
+        """Return the pixel nearest to each point, columns and rows, (2, n); −1 behind."""
+        known = np.nan_to_num(np.rint(self.pixels(points)), nan=-1)
+        return np.clip(known, -1, 1e6).astype(np.intp).T
+
     def drawn(self, points: Array, size: float) -> NDArray[np.bool_]:
         """Return the pixels that cubes of ``size`` m about points cover."""
-        found = np.zeros(self.bgr.shape[:2], dtype=np.uint8)
+        height, width = self.bgr.shape[0], self.bgr.shape[1]
+        found = np.zeros((height, width), dtype=np.uint8)
         if len(points) == 0:
-            return found > 0
+            return np.asarray(found > 0)
         depths = points @ self.view.rotation[2] + self.view.shift[2]
         depth = float(np.median(depths))
         reach = max(1, round(size * self.view.lens[0] * self.scale / max(depth, 0.1)))
-        columns, rows = np.nan_to_num(np.rint(self.pixels(points)), nan=-1).astype(int).T
-        shown = (rows >= 0) & (rows < found.shape[0]) & (columns >= 0) & (columns < found.shape[1])
+        columns, rows = self.nearest(points)
+        shown = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
         found[rows[shown], columns[shown]] = 1
         return np.asarray(cv2.dilate(found, np.ones((reach + 1, reach + 1), np.uint8)) > 0)
 
@@ -127,7 +133,7 @@ def _common(seen: Sequence[_Small], masks: Sequence[NDArray[np.bool_]], middle: 
     against = np.zeros(len(points), dtype=int)
     shown_by = np.zeros(len(points), dtype=int)
     for one, mask in zip(seen, masks, strict=True):
-        columns, rows = np.nan_to_num(np.rint(one.pixels(points)), nan=-1).astype(int).T
+        columns, rows = one.nearest(points)
         shown = (rows >= 0) & (rows < mask.shape[0]) & (columns >= 0) & (columns < mask.shape[1])
         shown_by += shown
         against[shown] += ~mask[rows[shown], columns[shown]]
