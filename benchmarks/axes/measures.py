@@ -1,10 +1,13 @@
 """Numbers that tell how good something is, each against hand-made cases in the tests."""
 
+from collections.abc import Iterable, Mapping
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinesphere.data import Step
 from kinesphere.geometry.rotations import mean_rotation, rotation_angle
 
 Array = NDArray[np.float64]
@@ -84,3 +87,10 @@ def rms(values: Array) -> float:
     """Return the root mean square of what is known; NaN if nothing is."""
     known = values[np.isfinite(values)]
     return float(np.sqrt((known**2).mean())) if known.size else float("nan")
+
+
+def found_at_joints(history: Iterable[Step]) -> Mapping[str, Any]:
+    """Return what the last parameterization in a history found, joint by joint."""
+    steps = [step for step in history if step.name == "parameterization"]
+    found: Any = steps[-1].findings["joints"]
+    return found

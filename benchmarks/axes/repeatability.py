@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.axes.bars import Bar, number
-from benchmarks.axes.measures import line_angles, matched, mirrored
+from benchmarks.axes.measures import found_at_joints, line_angles, matched, mirrored
 from kinesphere.data import Motion, Parameters
 from kinesphere.parameterization import AxesSettings, ParameterizationSettings, parameterize
 
@@ -26,7 +26,7 @@ def half_rows(motion: Motion, whole: Parameters) -> list[dict[str, Any]]:
     halves = [parameterize(motion, KEEP, calibration=window) for window in windows]
     carried = parameterize(motion, KEEP, reuse=halves[0].skeleton)
     second = motion.times >= middle
-    told: Any = whole.history[-1].findings["joints"]
+    told = found_at_joints(whole.history)
     rows = []
     for j, joint in enumerate(whole.skeleton.joints):
         first, last = (half.skeleton.joints[j] for half in halves)
@@ -64,8 +64,7 @@ def half_rows(motion: Motion, whole: Parameters) -> list[dict[str, Any]]:
 
 def _enough(half: Parameters, joint: str) -> bool:
     """Return whether a half moves far enough about each of its axes to speak against the whole."""
-    findings: Any = half.history[-1].findings["joints"]
-    told = [r for r in findings[joint].get("ranges_deg", ()) if r is not None]
+    told = [r for r in found_at_joints(half.history)[joint].get("ranges_deg", ()) if r is not None]
     return bool(min(told, default=0.0) >= KEEP.axes.smallest_range)
 
 

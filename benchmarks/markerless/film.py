@@ -2,7 +2,11 @@
 
     python -m benchmarks.markerless.film FOLDER [--movement arms] [--conditions plain] [--seed 1]
 
-``truth.npz`` beside it holds the limbs' names, joint centres and turns, and the elbows' angles.
+``truth.npz`` beside it holds the limbs' names, joint centres and turns, and the elbows' angles;
+``markers.c3d`` and ``markers.json`` are what a marker system would have recorded, and its model:
+
+    kinesphere solve FOLDER/markers.c3d --model FOLDER/markers.json -o MARKERS
+    kinesphere compare MARKERS OUT --joint left_elbow -o both.html
 """
 
 import argparse
@@ -11,9 +15,18 @@ from pathlib import Path
 import numpy as np
 
 from kinesphere.data import bundled_body
-from kinesphere.io import replacing
+from kinesphere.io import replacing, write_c3d
+from kinesphere.io.model_json import write_model
 from kinesphere.io.scene import write_scene
-from kinesphere.synthetic.film import CONDITIONS, MOVEMENTS, Film, another_person, make_film
+from kinesphere.synthetic.film import (
+    CONDITIONS,
+    MOVEMENTS,
+    Film,
+    another_person,
+    make_film,
+    marker_model,
+    markers_of,
+)
 
 
 def write_film(film: Film, folder: Path, images: str = "mp4") -> Path:
@@ -31,6 +44,8 @@ def write_film(film: Film, folder: Path, images: str = "mp4") -> Path:
             vertices=surface.vertices,
             rate=motion.rate,
         )
+    write_c3d(markers_of(motion, np.random.default_rng(film.footage.seed)), folder / "markers.c3d")
+    write_model(marker_model(surface), folder / "markers.json")
     return path
 
 

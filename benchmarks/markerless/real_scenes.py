@@ -11,6 +11,9 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.markerless.alignment import pixel_map
 
 DATA = Path(os.environ.get("KINESPHERE_DATA", "../shared/data"))
 _CROPPED = {"cam01", "cam02"}
@@ -52,13 +55,21 @@ def write_pose2sim_scene(
     return _written(folder, lines)
 
 
-def write_parsec_scene(folder: Path, data: Path = DATA, *, masks: bool = True) -> Path:
+def write_parsec_scene(
+    folder: Path,
+    data: Path = DATA,
+    *,
+    masks: bool = True,
+    shifts: NDArray[np.float64] | None = None,
+) -> Path:
     """Write the scene of the single instant that four grey cameras saw; return its path.
 
     Parameters
     ----------
     masks
         Whether its foreground maps are used, or only compared with.
+    shifts
+        (4, 2) px, where the images lie beside what the calibration says: its cameras were moved.
     """
     video = (data / "video" / "parsec").resolve()
     folder.mkdir(parents=True, exist_ok=True)
@@ -86,6 +97,8 @@ def write_parsec_scene(folder: Path, data: Path = DATA, *, masks: bool = True) -
             f"images = {json.dumps(str(video / f'CAM{i}' / 'image0000.bmp'))}",
             f"{what} = {json.dumps(str(video / f'FG{i}' / 'image0000.bmp'))}",
         ]
+        if shifts is not None:
+            lines.append(pixel_map(shifts[i - 1]))
     (folder / "calibration.toml").write_text("\n".join(calibration) + "\n")
     return _written(folder, lines)
 

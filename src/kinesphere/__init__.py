@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from kinesphere.io import read_rig as read_rig
     from kinesphere.io import write as write
     from kinesphere.io import write_on_rig as write_on_rig
+    from kinesphere.labelling import LiveLabeller as LiveLabeller
+    from kinesphere.labelling import built_in_model as built_in_model
     from kinesphere.labelling import label as label
     from kinesphere.pipeline import Settings as Settings
     from kinesphere.pipeline import retarget as retarget
@@ -61,7 +63,7 @@ _ROOMS = {
     "editing": "apply_edits attach_surface skin",
     "errors": "KinesphereError",
     "io": "read read_rig write write_on_rig",
-    "labelling": "label",
+    "labelling": "LiveLabeller built_in_model label",
     "pipeline": "Settings retarget solve",
     "report": "report_html",
 }

@@ -51,3 +51,7 @@ class AmbiguousFacing(KinesphereError):
 
 class BadSurface(KinesphereError):
     """A mesh contradicts itself or cannot ride on the skeleton it is given."""
+
+
+class Interrupted(KinesphereError):
+    """Somebody stopped the work; what there was of it is kept."""

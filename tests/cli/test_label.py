@@ -69,6 +69,22 @@ def test_a_labelled_file_a_table_and_a_page(files, capsys):
         assert name in page
 
 
+def test_where_nothing_can_be_told_nothing_is_written(files, capsys):
+    raw = read(files / "raw.c3d")
+    one = replace(raw, markers=raw.markers[:1], residuals=None, outputs=(), analog=None, events=())
+    write(one, files / "one.c3d")
+    out = files / "nothing.c3d"
+    code = run(
+        ["label", str(files / "one.c3d"), "--model", str(files / "upper.json"), "-o", str(out)]
+    )
+    assert code == 2
+    said = capsys.readouterr().err
+    assert "one frame alone" in said
+    assert "none of the 11 labels" in said
+    assert not out.exists()
+    assert not out.with_suffix(".html").exists()
+
+
 def test_machines_get_json(files, capsys):
     out = files / "again.c3d"
     raw, model = str(files / "raw.c3d"), str(files / "upper.json")

@@ -51,10 +51,69 @@ def test_a_scene_becomes_a_solved_folder(call, scene, film, tmp_path):
         true = film.motion.joint_centres[:, names.index(limb)]
         assert np.linalg.norm(found - true, axis=1).max() < 0.05
     assert read_image(out / "overlays.jpg").shape[0] > 100
+    import av
+
+    with av.open(str(out / "overlays.mp4")) as container:
+        assert len(list(container.decode(video=0))) == 5
     assert len((out / "tracking.csv").read_text().splitlines()) == 6
     page = (out / "report.html").read_text()
     assert "Small film" in page
     assert "data:image/jpeg;base64," in page
+    assert '<video controls loop muted playsinline preload="metadata" src="overlays.mp4"' in page
+    assert solution.surface is not None
+
+
+def test_interrupted_it_keeps_what_was_solved(call, scene, tmp_path, monkeypatch):
+    from kinesphere.markerless.account import Account
+
+    enter = Account.enter
+
+    def three_at_most(account, frame, found, seconds):
+        if account.n_entered == 3:
+            raise KeyboardInterrupt
+        enter(account, frame, found, seconds)
+
+    monkeypatch.setattr(Account, "enter", three_at_most)
+    out = tmp_path / "out"
+    shown = call("track", scene, "-o", out, "--no-video")
+    assert shown.code == 2
+    assert f"interrupted after 3 of 5 frames; they are kept in {out}" in shown.err
+    solution = read_solution(out)
+    seen = np.isfinite(solution.motion.origins[:, 0, 0])
+    assert seen.tolist() == [True, True, True, False, False]
+    assert any("interrupted after 3 of 5" in warning for warning in solution.warnings)
+    assert not (out / "overlays.mp4").exists()
+    assert "overlays.mp4" not in (out / "report.html").read_text()
+
+
+def test_who_will_not_wait_for_the_video_keeps_the_rest(call, scene, tmp_path, monkeypatch):
+    from kinesphere.report import overlay_film
+
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(overlay_film, "drawn_panels", stopped)
+    out = tmp_path / "out"
+    assert call("track", scene, "-o", out).code == 0
+    assert read_solution(out).motion.n_frames == 5
+    assert not (out / "overlays.mp4").exists()
+
+
+def test_what_cannot_be_meant_is_said_before_tracking(call, scene, tmp_path, monkeypatch):
+    from kinesphere.pipeline import track as line
+
+    def never(*_):
+        raise AssertionError("tracking began")
+
+    monkeypatch.setattr(line, "track", never)
+    for words, said in (
+        (("--calibration", "50:60"), "calibration is 50–60 s; the scene runs from 0 to 0.13 s"),
+        (("--facing", "north"), "facing is 'north'; known are"),
+    ):
+        shown = call("track", scene, "-o", tmp_path / "out", *words)
+        assert shown.code == 2
+        assert said in shown.err
+        assert len(shown.error_lines) == 1
 
 
 def test_a_scene_that_does_not_fit_is_one_line(call, scene, tmp_path):

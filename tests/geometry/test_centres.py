@@ -9,7 +9,8 @@ from scipy.spatial.transform import Rotation
 
 from kinesphere.geometry.algebraic_centres import score_centre, sphere_centre
 from kinesphere.geometry.centres import Turning, View, _inverse, fit_centre
-from kinesphere.geometry.rigid import into_frame, out_of_frame, pose_covariance
+from kinesphere.geometry.pose_errors import pose_covariance
+from kinesphere.geometry.rigid import into_frame, out_of_frame
 
 FRAMES = 150
 CENTRE = np.array([0.1, -0.2, 0.05])

@@ -6,14 +6,13 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+from kinesphere.geometry.pose_errors import point_covariance, pose_covariance
 from kinesphere.geometry.rigid import (
     fit_rigid,
     fit_shape,
     into_frame,
     line_spread,
     out_of_frame,
-    point_covariance,
-    pose_covariance,
 )
 
 FRAMES, POINTS = 80, 5

@@ -132,7 +132,7 @@ class TestExchanges:
         for change in (-0.4, 0.0, 0.4):
             costs = np.zeros((2, 2, 2, 2), dtype=np.float32)
             kernels.pair_costs(
-                one, at + change, 0.01 * one, one, one, one, at, one, stiller, 3.0, costs
+                one, at + change, 0.01 * one, one, one, one, at, one, stiller, 3.0, -1, costs
             )
             found.append(costs[0, 0, 1, 1])
             assert_array_equal(costs[0, 0, 0], 0)
@@ -267,6 +267,28 @@ class TestLive:
             labels = live.label(crowd[order])
             truth = np.where((order < len(frame)) & np.isfinite(crowd[order, 0]), order, -1)
             assert_array_equal(labels, truth)
+
+    def test_labels_exchanged_in_passing_are_back_at_once(self, legs):
+        _, recording = legs
+        live = LiveLabels(recording.markers[:1000], recording.labels, recording.rate)
+        order = np.arange(recording.n_markers)
+        for t in range(1000, 1010):
+            live.label(recording.markers[t])
+        a, b = recording.labels.index("LFWT"), recording.labels.index("RTOE")
+        live._here[[a, b]] = live._here[[b, a]]
+        live._step[[a, b]] = live._step[[b, a]]
+        assert_array_equal(live.label(recording.markers[1010]), order)
+
+    def test_a_label_on_what_is_no_marker_is_taken_away(self, legs):
+        _, recording = legs
+        live = LiveLabels(recording.markers[:1000], recording.labels, recording.rate)
+        i = recording.labels.index("LTOE")
+        for t in range(1000, 1050):
+            frame = recording.markers[t].copy()
+            frame[i] = recording.markers[999, i] + 0.02 * (t - 999)  # it drifts off
+            labels = live.label(frame)
+        assert labels[i] == -1
+        assert_array_equal(np.delete(labels, i), np.delete(np.arange(len(labels)), i))
 
     def test_too_little_to_lock_on_to_is_refused(self):
         with pytest.raises(BadRecording, match="0 markers are seen"):

@@ -1,6 +1,7 @@
 """Cameras that fit agree; one that is turned, swapped or late is found."""
 
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ pytest.importorskip("cv2")
 from kinesphere.data import Footage
 from kinesphere.markerless.checks import AGREE, check_scene
 from kinesphere.markerless.consistency import disagreement, find_culprit, find_lateness, sights
+from kinesphere.markerless.mixups import find_swap, person_size
 from kinesphere.synthetic.film import make_film
 
 pytestmark = pytest.mark.slow  # rendering takes long in plain Python
@@ -48,6 +50,19 @@ class Late:
             mixed = list(now.masks)
             mixed[self.camera] = late.masks[self.camera]
             yield replace(now, masks=tuple(mixed))
+
+
+@dataclass(frozen=True)
+class Gone:
+    """Footage in which nobody is there in some frames."""
+
+    footage: Footage
+    gone: range
+
+    def frames(self, start, stop, step=1):
+        for frame in self.footage.frames(start, stop, step):
+            empty = tuple(np.zeros_like(mask) for mask in frame.masks)
+            yield replace(frame, masks=empty) if frame.index in self.gone else frame
 
 
 def turned(camera, degrees):
@@ -102,7 +117,7 @@ def test_the_camera_that_is_late_is_found(film, masks, frames_late):
         row = list(masks[t])
         row[1] = masks[t - frames_late][1]
         mixed.append(tuple(row))
-    late = find_lateness(sights(film.scene.cameras, mixed), 4)
+    late, *_ = find_lateness(sights(film.scene.cameras, mixed), 4)
     assert (late.camera, late.frames) == (1, frames_late)
     assert late.mended > 0.6
 
@@ -116,8 +131,13 @@ def test_a_scene_in_order_has_nothing_to_say(film):
 def test_a_late_camera_is_named_with_its_remedy(film):
     late = replace(film.scene, footage=Late(film.scene.footage, 2, 3), offsets=(0, 0, 5, 0))
     (warning,) = check_scene(late).warnings
-    assert "cam03 seems to show everything 3 frames later" in warning
-    assert "offset = 8" in warning
+    assert "cam03 3 frames later" in warning
+    assert "offset = 8 in the [[camera]] of cam03" in warning
+
+
+def test_people_who_come_and_go_are_no_late_camera(film):
+    gone = replace(film.scene, footage=Gone(film.scene.footage, range(9, 14)))
+    assert check_scene(gone).warnings == ()
 
 
 def test_a_wrong_calibration_is_named(film):
@@ -127,10 +147,31 @@ def test_a_wrong_calibration_is_named(film):
     assert any("cam01 does not fit the others" in warning for warning in warnings)
 
 
-def test_swapped_cameras_are_noticed(film):
-    a, b, c, d = film.scene.cameras
-    warnings = check_scene(replace(film.scene, cameras=(b, a, c, d))).warnings
-    assert any("contradict each other" in warning for warning in warnings)
+@pytest.mark.parametrize(("one", "other"), list(combinations(range(4), 2)))
+def test_exchanged_cameras_are_named(film, one, other):
+    """Opposite ones, too, whose silhouettes are nearly each other's mirror image."""
+    cameras = list(film.scene.cameras)
+    cameras[one], cameras[other] = (
+        replace(cameras[other], name=cameras[one].name),
+        replace(cameras[one], name=cameras[other].name),
+    )
+    (warning,) = check_scene(replace(film.scene, cameras=tuple(cameras))).warnings
+    assert f"cam0{one + 1} and cam0{other + 1} seem to be exchanged" in warning
+
+
+def test_two_cameras_cannot_tell_that_they_are_exchanged(film, masks):
+    cameras = film.scene.cameras[:2][::-1]
+    assert find_swap(cameras, [m[:2] for m in masks]) is None
+
+
+@pytest.mark.parametrize("scale", [0.1, 3.0])
+def test_a_person_of_a_size_nobody_has_means_a_wrong_unit(film, masks, scale):
+    cameras = tuple(replace(c, translation=c.translation * scale) for c in film.scene.cameras)
+    size = person_size(film.scene.cameras, masks[::6])
+    assert 1.6 < size < 2.3
+    assert person_size(cameras, masks[::6]) == pytest.approx(scale * size, rel=1e-6)
+    warnings = check_scene(replace(film.scene, cameras=cameras)).warnings
+    assert any("calibration's unit is wrong" in warning for warning in warnings)
 
 
 def test_without_masks_or_plates_it_says_that_nothing_was_checked(film):

@@ -36,6 +36,19 @@ class Shots:
         return iter(self.shots[start:stop:step])
 
 
+@dataclass(frozen=True)
+class Stopping(Shots):
+    """Footage during whose longest run somebody presses Ctrl-C."""
+
+    at: int
+
+    def frames(self, start, stop, step=1):
+        for frame in super().frames(start, stop, step):
+            if frame.index == self.at and stop - start > 1:
+                raise KeyboardInterrupt
+            yield frame
+
+
 @pytest.fixture(scope="module")
 def film():
     return make_film(1, "arms", n_frames=N, plates=True, size=SIZE)
@@ -135,7 +148,35 @@ def test_frames_without_images_are_gaps_and_tracking_resumes(motion, film, shots
     assert np.isnan(tracked.overlap[7, 0])
     assert np.isfinite(tracked.overlap[7, 1:]).all()
     assert np.nanmean(errors(tracked, film)[6:]) < 0.015
-    assert "in 2 of 10 frames no camera has an image" in tracked.history[-1].warnings
+    assert "no camera has an image in frames 5–6: no pose there" in tracked.history[-1].warnings
+
+
+def test_who_leaves_has_no_pose_and_is_found_again(motion, film, shots):
+    left = list(shots)
+    for i in (4, 5):
+        left[i] = replace(left[i], images=film.scene.plates)
+    scene = scene_of(film, tuple(left))
+    tracked = track(scene, bundled_body(), QUICK, start=near_truth(motion, 0))
+    assert tracked.solved.tolist() == [i not in (4, 5) for i in range(N)]
+    assert np.nanmean(errors(tracked, film)[6:]) < 0.015
+    assert "nobody is seen in frames 5–6: no pose there" in tracked.history[-1].warnings
+
+
+def test_interrupted_it_keeps_what_it_has(motion, film, shots):
+    scene, start = scene_of(film, shots), near_truth(motion, 0)
+    whole = track(scene, bundled_body(), QUICK, start=start)
+    stopping = replace(scene, footage=Stopping(shots, 6))
+    tracked = track(stopping, bundled_body(), QUICK, start=start)
+    assert (whole.n_reached, tracked.n_reached) == (None, 6)
+    assert tracked.solved.tolist() == [i < 6 for i in range(N)]
+    assert np.array_equal(tracked.parameters[:6], whole.parameters[:6])
+    assert "interrupted after 6 of 10 frames" in tracked.history[-1].warnings[0]
+
+
+def test_interrupted_before_anything_was_found_it_stops(motion, film, shots):
+    scene = replace(scene_of(film, shots), footage=Stopping(shots, 0))
+    with pytest.raises(KeyboardInterrupt):
+        track(scene, bundled_body(), QUICK, start=near_truth(motion, 0))
 
 
 def test_arms_that_slip_are_held_lost_and_mostly_found_again():

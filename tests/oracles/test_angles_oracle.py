@@ -11,7 +11,12 @@ from scipy.spatial.transform import Rotation
 from kinesphere.geometry.chain import joint_rotations
 from kinesphere.geometry.rotations import rotation_about, rotation_angle
 from kinesphere.parameterization.angles import solve_angles
-from kinesphere.parameterization.kernels import smoothest_branches, two_axis_solutions
+from kinesphere.parameterization.kernels import (
+    APART,
+    MOST_CHANGE,
+    smoothest_branches,
+    two_axis_solutions,
+)
 from kinesphere.parameterization.settings import AngleSettings, TwistSettings
 from kinesphere.parameterization.twist import closed_twist
 
@@ -87,25 +92,40 @@ def test_singular_exactly_where_the_jacobian_loses_rank(rng):
         )  # forward differences
 
 
-def test_the_smoothest_path_is_the_cheapest_of_all(rng):
-    n, weight = 9, 0.1
-    solutions = rng.uniform(-np.pi, np.pi, (n, 2, 3))
+@pytest.mark.parametrize("spread", [0.3, 1.0])
+def test_the_smoothest_path_is_the_cheapest_of_all(rng, spread):
+    n, weight, leap = 9, 0.1, 2.0
+    # two branches that lie apart now and then, and change places; with 1.0 anything
+    sides = np.where(rng.random((n, 1, 1)) < 0.5, 1.0, -1.0) * np.array([[[-1.6], [1.6]]])
+    solutions = (1 - spread) * sides + spread * rng.uniform(-np.pi, np.pi, (n, 2, 3))
     solutions[4] = np.nan
     known = rng.random(n) > 0.3
-    chosen = smoothest_branches(solutions, known, weight)
+    chosen = smoothest_branches(solutions, known, weight, leap)
+    leaps = 0
+
+    def changed(a, b, i, j):
+        parts = 3 if known[a] and known[b] else 2
+        change = solutions[b, j, :parts] - solutions[a, i, :parts]
+        return np.abs(np.angle(np.exp(1j * change))).sum()
+
+    def step(a, b, i, j):
+        nonlocal leaps
+        keeping = (changed(a, b, 0, 0) + changed(a, b, 1, 1)) / 2
+        crossing = (changed(a, b, 0, 1) + changed(a, b, 1, 0)) / 2
+        dearer = (keeping - crossing) * (1 if i == j else -1)
+        far = dearer > (APART if known[a] and known[b] else APART * 2 / 3)
+        leaps += far
+        return min(changed(a, b, i, j), MOST_CHANGE) + (leap if far else 0)
 
     def cost(path):
         seen = [f for f in range(n) if f != 4]
         total = sum(
             weight * solutions[f, path[f], 2] ** 2 if known[f] else 1e-3 * path[f] for f in seen
         )
-        for a, b in pairwise(seen):
-            parts = 3 if known[a] and known[b] else 2
-            change = solutions[b, path[b], :parts] - solutions[a, path[a], :parts]
-            total += min(np.abs(np.angle(np.exp(1j * change))).sum(), 3.0)
-        return total
+        return total + sum(step(a, b, path[a], path[b]) for a, b in pairwise(seen))
 
     cheapest = min(cost([(code >> f) & 1 for f in range(n)]) for code in range(2**n))
+    assert leaps > 0
     assert cost(chosen) == pytest.approx(cheapest, abs=1e-9)
 
 

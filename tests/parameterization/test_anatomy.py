@@ -18,12 +18,11 @@ from kinesphere.parameterization.anatomy import (
     nominal_axes,
     substitute_axes,
 )
+from kinesphere.parameterization.per_joint import parse_counts, parse_windows
 from kinesphere.parameterization.settings import (
     AxesSettings,
     FilterSettings,
     ParameterizationSettings,
-    parse_counts,
-    parse_windows,
 )
 from kinesphere.synthetic.actor import make_actor
 from kinesphere.synthetic.bodies import HUMAN

@@ -199,3 +199,55 @@ def test_the_size_of_a_turn_about_the_first_of_three_axes_does_not_matter(rng, b
     truth = smooth(rng, 400, [170, 60, 60])
     rotations = joint_rotations(axes, rest, long_axis, truth, np.zeros(400))
     assert_allclose(solve(rotations, axes, rest, long_axis, branch).angles, truth, atol=EXACT)
+
+
+def shaken(rng, rotations, deg):
+    """Turn every frame by itself about anything, ``deg`` about each axis."""
+    return (
+        Rotation.from_rotvec(np.deg2rad(deg) * rng.normal(size=(len(rotations), 3))).as_matrix()
+        @ rotations
+    )
+
+
+def wrong(angles, truth):
+    """Return the share of frames with an angle more than 30 deg off."""
+    off = np.abs(np.angle(np.exp(1j * (angles - truth)))).max(axis=1)
+    return (off > np.deg2rad(30)).mean()
+
+
+def test_a_limb_spun_about_itself_keeps_its_branch_also_where_angles_are_wrapped(rng):
+    n = 1200
+    for most in (130, 170):
+        axes, rest, long_axis = draw_joint(rng, 70)
+        truth = smooth(rng, n, [45, 60, most])
+        rotations = joint_rotations(axes, rest, long_axis, truth[:, :2], truth[:, 2])
+        solved = solve(shaken(rng, rotations, 1.0), axes, rest, long_axis)
+        assert wrong(solved.angles[:, :2], truth[:, :2]) == 0
+
+
+@pytest.mark.parametrize("unwrap", [False, True])
+def test_noise_of_standing_never_buys_a_change_of_branch(rng, unwrap):
+    n, rate = 4500, 50.0
+    settings = AngleSettings(unwrap=unwrap)
+    for _ in range(6):
+        axes, rest, long_axis = draw_joint(rng, 80, 80)
+        if not unwrap:
+            axes = np.array([rest @ long_axis, *axes])
+        truth = np.where(np.arange(n)[:, None] % 1500 < 300, smooth(rng, n, [40, 30, 40]), 0)
+        if unwrap:
+            rotations = joint_rotations(axes, rest, long_axis, truth[:, 1:], truth[:, 0])
+        else:
+            rotations = joint_rotations(axes, rest, long_axis, truth, np.zeros(n))
+        known = np.ones(n, dtype=bool)
+        solved = solve_angles(
+            shaken(rng, rotations, 3.0),
+            axes,
+            rest,
+            long_axis,
+            known,
+            settings,
+            TwistSettings(),
+            rate,
+        )
+        found = solved.angles[:, :2] if unwrap else solved.angles
+        assert wrong(found, truth[:, 1:] if unwrap else truth) == 0

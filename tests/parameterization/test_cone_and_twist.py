@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from kinesphere.geometry.rotations import mean_rotation, rotation_about
 from kinesphere.parameterization.axes.cone_and_twist import Cone, ConeAndTwist, likeliest_axis
+from kinesphere.parameterization.axes.stratify import turning_weights
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.twist import closed_twist
 
@@ -64,3 +65,10 @@ def test_thinning_keeps_about_as_many_as_asked_for(rng):
     whole = ConeAndTwist.of(joint, PHASES, 1000)
     assert len(whole.scalars) == 100
     assert whole.effective == 100 / 50.0 / 0.4  # s of movement over s of memory
+
+
+def test_frames_of_one_cell_count_as_one(rng):
+    turns = Rotation.from_rotvec(np.deg2rad([[0, 0, a] for a in (0, 3, 5, 8, 9.5, 4, 2, -1)]))
+    found = turning_weights(turns.as_matrix(), np.deg2rad(4.0))
+    assert_allclose(found, [0.5, 0.5, 0.5, 0.5, 1.0, 0.5, 0.5, 1.0], rtol=0)
+    assert turning_weights(turns.as_matrix(), np.pi).tolist() == [1 / 8] * 8

@@ -56,6 +56,22 @@ def test_twist_cannot_touch_the_axis_of_a_hinge(rng, cone):
     assert degrees(by_orientation, axis) > 1.0  # what twist does to the start
 
 
+def test_a_limb_that_dwells_says_nothing_new(rng):
+    n = 200
+    samples, _ = hinge(rng, n=n, twists=(-15, 15))
+    skin = np.deg2rad(6.0) * np.sin(np.linspace(0, 13, n))[:, None] * rng.normal(size=3)
+    loose = Rotation.from_rotvec(skin).as_matrix() @ samples.rotations
+    dwelling = np.sort(np.concatenate([np.arange(n), np.repeat([50, 140], 90)]))
+
+    def found(frames):
+        turned = loose[frames]
+        phases = ((0, len(frames)),)
+        joint = JointSamples(turned, turned @ LONG_AXIS, phases, RATE, LONG_AXIS)
+        return hinge_axis(joint, LONG_AXIS[None])[0]
+
+    assert degrees(found(dwelling), found(np.arange(n))) < 0.1
+
+
 def test_without_twist_orientations_make_a_small_movement_tell_its_axis(rng):
     # an arc of 20 deg has a sagitta of 1.5 deg: directions alone are at a loss under 1 deg of noise
     errors = []
@@ -82,14 +98,16 @@ def test_phases_share_one_cone(rng):
 
 
 def test_free_motion_tells_the_axis_of_a_hinge(rng):
-    samples, axis = hinge(rng, noise=1.0)
-    off = Rotation.from_rotvec(np.deg2rad(25.0) * LONG_AXIS).apply(axis)
-    found = free_hinge(samples, off)
-    assert found.clearly_better
-    error = degrees(found.axis, axis)
-    assert error < 1.0
-    assert error < 4 * np.rad2deg(found.uncertainty)
-    assert np.rad2deg(found.moved) > 40.0
+    errors = []
+    for _ in range(12):
+        samples, axis = hinge(rng, noise=1.0)
+        off = Rotation.from_rotvec(np.deg2rad(25.0) * LONG_AXIS).apply(axis)
+        found = free_hinge(samples, off)
+        errors.append(degrees(found.axis, axis))
+        assert found.clearly_better
+        assert errors[-1] < 4 * np.rad2deg(found.uncertainty)
+        assert np.rad2deg(found.moved) > 40.0
+    assert np.median(errors) < 1.0
 
 
 def test_what_is_no_better_than_the_body_axis_is_said_so(rng):

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinesphere.data import PoseFlag
+from kinesphere.data import PoseFlag, Step
+from kinesphere.report.axes_words import axes_in_detail
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
 
 
@@ -55,6 +56,23 @@ def test_a_joint_row_tells_the_figures(solution):
     share = 10 / solution.parameters.n_frames
     assert f"unseen {share:.1%}" in row.flagged
     assert "singular" in row.flagged
+
+
+def test_each_axis_tells_how_well_it_is_determined():
+    told = {
+        "axes_uncertainty_deg": [1.44, 0.52],
+        "ranges_deg": [88.0, 91.6],
+        "conditioning": [840.6, 9.87],
+    }
+    unsure = {"axes_uncertainty_deg": [None, 2.0], "ranges_deg": [None, 40.2], "conditioning": []}
+    body = {"axes_uncertainty_deg": [None], "ranges_deg": [3.0], "conditioning": [1.2]}
+    joints = {"left_hip": told, "left_elbow": unsure, "neck": body}
+    history = (Step("parameterization", {}, {"joints": joints}, (), "0"),)
+    assert axes_in_detail("left_hip", history) == (
+        "axis 1 ± 1.4°, over 88°, conditioning 841; axis 2 ± 0.5°, over 92°, conditioning 9.87"
+    )
+    assert axes_in_detail("left_elbow", history) == "axis 2 ± 2.0°, over 40°"
+    assert axes_in_detail("neck", history) == axes_in_detail("nobody", ()) == ""
 
 
 def test_limbs_are_measured_against_the_other_side(solution):

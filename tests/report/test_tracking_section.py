@@ -9,12 +9,8 @@ import pytest
 
 pytest.importorskip("cv2")
 
-from kinesphere.report.tracking import (
-    overlay_strip,
-    shown_frames,
-    tracking_section,
-    tracking_table,
-)
+from kinesphere.report.strip import overlay_strip, shown_frames
+from kinesphere.report.tracking import tracking_section, tracking_table
 from kinesphere.synthetic.film import make_film
 
 pytestmark = pytest.mark.slow  # rendering takes long in plain Python
@@ -59,6 +55,18 @@ def test_the_section_tells_of_lost_limbs(film, spoiled):
     assert html.count('<path class="c1"') == 1
     broken = html.split('<path class="c1" d="')[1].split('"')[0]
     assert broken.count("M") == 2  # the curve breaks where there was no image
+
+
+def test_overlap_with_given_masks_stands_apart(film, spoiled):
+    by_mask = np.zeros(spoiled.overlap.shape, dtype=bool)
+    by_mask[[2, 7], 1] = True
+    overlap = spoiled.overlap.copy()
+    overlap[[2, 7], 1] = 0.5, 0.7
+    html = tracking_section(
+        film.scene, replace(spoiled, overlap=overlap, by_mask=by_mask), b"", [0]
+    )
+    assert '<td class="n">0.60</td><td class="n">2</td>' in html
+    assert "with given masks" not in tracking_section(film.scene, spoiled, b"", [0])
 
 
 def test_names_of_cameras_cannot_smuggle_markup(film, spoiled):

@@ -10,6 +10,7 @@ from typing import Any
 
 from benchmarks.accuracy.bodies.arm import arm_figures
 from benchmarks.accuracy.bodies.cases import ROOT, actor_case, creature_cases, folder, real_cases
+from benchmarks.accuracy.bodies.changes import change_rows
 from benchmarks.accuracy.bodies.cost import Cost, cost_rows, plot
 from benchmarks.accuracy.bodies.functional import functional_rows
 from benchmarks.accuracy.bodies.hiding import hiding_rows
@@ -17,29 +18,48 @@ from benchmarks.accuracy.bodies.page import bars, page
 from benchmarks.accuracy.bodies.partitions import Row, rows
 from kinesphere import __version__
 
+CREATURES = 6
+"""Animals, hands, players and pairs of people."""
+
 
 def main() -> int:
     """Run every section; write ``skeleton.json``, ``skeleton.md`` and the plot."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--actors", type=int, default=10)
+    parser.add_argument(
+        "--without-peer", action="store_true", help="write the page without the peer's columns"
+    )
     arguments = parser.parse_args()
+    if not _peer() and not arguments.without_peer:
+        print(
+            "the peer biobuddy is not installed here, and the page would lose its columns: "
+            "pip install -e .[bench], in an environment of its own, or --without-peer",
+            file=sys.stderr,
+        )
+        return 2
     if not folder().is_dir():
         print(f"no real recordings at {folder()}; set KINESPHERE_DATA", file=sys.stderr)
         return 2
     partitions: list[Row] = []
     for row in rows(real_cases()):
         partitions.append(_told(row))
-    for seed in range(3):
-        partitions += [_told(row) for row in rows(creature_cases(seed))]
+    creatures = [creature_cases(seed) for seed in range(CREATURES)]
+    for cases in creatures:
+        partitions += [_told(row) for row in rows(cases)]
     for spoilt in (False, True):
         for seed in range(arguments.actors):
             case = actor_case(seed, spoilt=spoilt)
             partitions += [_told(row) for row in rows([case], centres=True)]
+    quadruped, hand, _, people = creatures[0]
+    lawful = [actor_case(0, spoilt=True), quadruped, hand, people]
+    cmu = [case for case in real_cases() if case.name.startswith("cmu41")]
+    changes = [asdict(row) for row in change_rows(lawful, cmu)]
     costs = cost_rows()
     found: dict[str, Any] = {
         "version": __version__,
         "peer": _peer(),
         "partitions": [asdict(row) for row in partitions],
+        "changes": changes,
         "arm": arm_figures(),
         "functional": [asdict(row) for row in functional_rows()],
         "hiding": [asdict(row) for row in hiding_rows()],

@@ -45,6 +45,10 @@ class Functional:
     halves_mm: float
     along_mm: float
     halves_deg: float
+    told_mm: float
+    """What the uncertainties of the halves' centres lead to expect between them, rms."""
+    told_deg: float
+    """The same of their axes."""
     blocks_mm: float
     """Between every second eighth of the trial and the rest: the same movements in both."""
     blocks_deg: float
@@ -89,6 +93,8 @@ def _row(trial: str, name: str) -> Functional:
         halves_mm=ours[0],
         along_mm=ours[1],
         halves_deg=ours[2],
+        told_mm=_told(halves, name, knee=knee),
+        told_deg=_told_axis(halves, name) if knee else np.nan,
         blocks_mm=mixed[0],
         blocks_deg=mixed[2],
         peer_halves_mm=peer[0],
@@ -162,6 +168,24 @@ def _compared(
     off = turn @ second.centre + shift - first.centre
     across, along = _apart(off, first.axis if knee else None)
     return across, along, _angle(turn @ second.axis, first.axis) if knee else np.nan
+
+
+def _told(halves: list[Solution], name: str, *, knee: bool) -> float:
+    """Return how far apart centres are to be expected by their covariances, mm rms."""
+    total = 0.0
+    for half in halves:
+        joint = half.skeleton.joint(name)
+        across = np.eye(3)
+        if knee and joint.axes is not None:
+            across -= np.outer(joint.axes[0], joint.axes[0])
+        total += float(np.trace(across @ joint.covariance @ across))
+    return 1e3 * float(np.sqrt(total))
+
+
+def _told_axis(halves: list[Solution], name: str) -> float:
+    """Return how far apart axes are to be expected by their uncertainties, deg rms."""
+    told = [half.skeleton.joint(name).axes_uncertainty for half in halves]
+    return float(np.rad2deg(np.linalg.norm([np.nan if t is None else t[0] for t in told])))
 
 
 def _markers(solution: Solution, name: str) -> dict[str, np.ndarray]:

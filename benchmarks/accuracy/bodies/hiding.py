@@ -1,11 +1,12 @@
-"""What becomes of markers while a whole limb is hidden."""
+"""What becomes of markers while a whole limb is hidden, bodies and joints from motion alone."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from kinesphere.skeleton import fill_markers, fit_skeleton
+from benchmarks.accuracy.bodies.cases import hidden as unlabelled
+from kinesphere.skeleton import discover, fill_markers, fit_skeleton
 from kinesphere.synthetic import make_performance
 
 LIMBS = ("left_thigh", "right_shank", "left_upper_arm", "trunk", "right_foot")
@@ -40,8 +41,8 @@ def hiding_rows() -> list[Hiding]:
                 hidden[start : start + n] = True
             markers = np.array(recording.markers)
             markers[np.ix_(np.flatnonzero(hidden), columns)] = np.nan
-            spoilt = replace(recording, markers=markers)
-            filled = fill_markers(spoilt, fit_skeleton(spoilt, performance.model))
+            spoilt = unlabelled(replace(recording, markers=markers))
+            filled = fill_markers(spoilt, fit_skeleton(spoilt, discover(spoilt).model))
             truth = recording.markers[hidden][:, columns]
             off = np.linalg.norm(filled.markers[hidden][:, columns] - truth, axis=2)
             known = off[np.isfinite(off)]

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.accuracy.bodies.changes import changes_section
+
 SIZES = [2, 3, 4]
 """Markers of the unlabelled arm's bodies."""
 
@@ -18,14 +20,16 @@ Written by `python -m benchmarks.accuracy.bodies`; every figure is in
 
 Labels are hidden before the run (`*0`, `*1`…); the program gets trajectories and nothing else.
 *ARI* is the adjusted Rand index of the marker bodies (Hubert & Arabie 1985), 1 where the partition
-is right. A joint is *wrong* if the two bodies it joins hold no limbs that meet. Names count as
+is right, over the markers of all trees (`discovery.tree` solves each). A joint is *wrong* if the
+two bodies it joins hold no limbs that meet, in whichever tree. Names count as
 wrong if a body's name is not that of most of its markers; limbs that are only numbered are not
 named.
 
 `discovery.split_ratio` and `discovery.shared_ratio`, what becomes of bodies of one marker, the
-weight of nearness in joint costs and the limits from which names are given were settled while
-looking at the real recordings below: for those rows this page is no independent check. The actors
-were in view as well; their partitions and trees were right throughout.
+weight of nearness in joint costs, the costs of bodies that are no limb and the limits from which
+names are given were settled while looking at the real recordings below: for those rows this page is
+no independent check. The actors were in view as well; their partitions and trees were right
+throughout.
 """
 
 
@@ -50,6 +54,7 @@ def bars(found: dict[str, Any]) -> list[Bar]:
         for name, row in rows.items()
         if name.startswith(("quadruped", "hand", "person with", "two people"))
     ]
+    laws = [row for row in found["changes"] if row["law"]]
     arm = found["arm"]
     worst_half = max(arm["halves_mm"].values())
     knees = [row for row in found["functional"] if row["joint"].endswith("knee")]
@@ -85,6 +90,12 @@ def bars(found: dict[str, Any]) -> list[Bar]:
             1.0,
         ),
         _right("quadruped, hand, racket, two people: the true tree", creatures),
+        Bar(
+            "other units, another order of markers: the same bodies and tree",
+            f"{sum(row['same'] for row in laws)} of {len(laws)}",
+            f"{len(laws)} of {len(laws)}",
+            all(row["same"] for row in laws),
+        ),
         _at_least("cmu41: least ARI", min(row["rand"] for row in cmu), 0.85),
         _at_most("cmu41: wrong joints, worst", max(len(row["wrong_edges"]) for row in cmu), 1, ""),
         _at_most("cmu41: wrong names", sum(len(row["wrong_names"]) for row in cmu), 0, ""),
@@ -109,6 +120,7 @@ def page(found: dict[str, Any]) -> str:
             INTRODUCTION,
             _scoreboard(bars(found)),
             _partitions(found["partitions"]),
+            changes_section(found["changes"]),
             _functional(found["functional"], found["peer"]),
             _arm(found["arm"]),
             _hiding(found["hiding"]),
@@ -167,24 +179,28 @@ def _partitions(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def _functional(rows: Sequence[dict[str, Any]], peer: str) -> str:
+    whose = peer or "biobuddy, left out here (`--without-peer`)"
     lines = [
         "## Hips and knees of functional trials\n",
         "Skeleton, axes and centres with the layout's model but without its landmarks: everything "
         "is from the motion. *Halves* are the first and the second half of the trial, in which "
         "people make different movements (a hip 77° in one, 53° in the other); *eighths* every "
-        "second eighth against the rest. Centres of knees across their axis; *along* it they are "
-        f"open. The peer is {peer or 'biobuddy, which is not installed here'}: SCoRE and SARA on "
-        "the same poses, in the same run. *SCoRE* compares its centre with the plain one of this "
-        "project; the time ratio is that of these two.\n",
-        "| joint | centre | halves | along | axis, halves | eighths | axis, eighths | peer, halves "
+        "second eighth against the rest. *Told* is the rms difference that the uncertainties in "
+        "`skeleton.json` lead to expect between the halves. Centres of knees across their axis; *along* it they are "
+        f"open. The peer is {whose}: SCoRE and SARA on the same poses, in the same run. "
+        "*SCoRE* compares its centre with the plain one of this project; the time ratio is the "
+        "peer's processor time over that of the plain one.\n",
+        "| joint | centre | halves | told | along | axis, halves | told | eighths | axis, eighths | peer, halves "
         "| peer axis, halves | to the peer | SCoRE | axis to the peer | time ratio |",
-        "|---|---|" + "---:|" * 11,
+        "|---|---|" + "---:|" * 13,
     ]
     for row in rows:
         lines.append(
             f"| {row['joint'].replace('_', ' ')} | {row['observability']} "
-            f"| {_n(row['halves_mm'], 'mm')} | {_n(row['along_mm'], 'mm')} "
-            f"| {_n(row['halves_deg'], '°')} | {_n(row['blocks_mm'], 'mm')} "
+            f"| {_n(row['halves_mm'], 'mm')} | {_n(row['told_mm'], 'mm')} "
+            f"| {_n(row['along_mm'], 'mm')} "
+            f"| {_n(row['halves_deg'], '°')} | {_n(row['told_deg'], '°')} "
+            f"| {_n(row['blocks_mm'], 'mm')} "
             f"| {_n(row['blocks_deg'], '°')} | {_n(row['peer_halves_mm'], 'mm')} "
             f"| {_n(row['peer_halves_deg'], '°')} | {_n(row['peer_mm'], 'mm')} "
             f"| {_n(row['score_mm'], 'mm')} | {_n(row['peer_deg'], '°')} "
@@ -207,7 +223,8 @@ def _arm(arm: dict[str, Any]) -> str:
 def _hiding(rows: Sequence[dict[str, Any]]) -> str:
     lines = [
         "## Limbs that are hidden\n",
-        "A synthetic actor in free motion, one limb's markers hidden again and again. Errors of "
+        "A synthetic actor in free motion, one limb's markers hidden again and again; labels are "
+        "hidden too, bodies and joints are found in the recording with its gaps. Errors of "
         "the marker positions that are put in (`skeleton.fill_markers`), against a cubic spline "
         "through each marker by itself.\n",
         "| limb | hidden for | placed | median | 95 % | spline, median |",

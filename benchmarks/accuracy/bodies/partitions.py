@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,6 +15,7 @@ from benchmarks.accuracy.bodies.measures import (
     wrong_edges,
     wrong_names,
 )
+from kinesphere.data import TopologicalModel
 from kinesphere.errors import KinesphereError
 from kinesphere.skeleton import Discovery, DiscoverySettings, discover, fit_skeleton
 
@@ -64,20 +66,25 @@ def _row(case: Case, method: str, *, centres: bool) -> Row:
         )
     seconds = time.process_time() - start
     told = found.step.findings
-    truth = _of_the_tree(case, found)
-    names = [segment.name for segment in found.model.segments]
+    models = [found.model, *_other_models(case, method, int(told["trees"]))]
+    partition = {
+        label: f"{i}:{body}"
+        for i, model in enumerate(models)
+        for label, body in partition_of(model).items()
+    }
+    names = [segment.name for model in models for segment in model.segments]
+    plain = {label: limb.rpartition(":")[2] for label, limb in case.truth.items()}
+    edges = case.edges
     return Row(
         case=case.name,
         method=method,
-        rand=rand_of(truth, partition_of(found.model)),
+        rand=rand_of(case.truth, partition),
         bodies=int(told["bodies_found"]),
         true_bodies=n_true,
-        wrong_edges=wrong_edges(found.model, case.truth, case.edges) if case.edges else [],
-        edges=len(found.model.joints) if case.edges else 0,
+        wrong_edges=[w for m in models for w in wrong_edges(m, case.truth, edges)] if edges else [],
+        edges=sum(len(model.joints) for model in models) if edges else 0,
         named=sum(not name.startswith("limb_") for name in names),
-        wrong_names=wrong_names(
-            found.model, {k: v.rpartition(":")[2] for k, v in case.truth.items()}
-        ),
+        wrong_names=[wrong for model in models for wrong in wrong_names(model, plain)],
         trees=int(told["trees"]),
         loose=len(told["loose"]),
         seconds=seconds,
@@ -85,10 +92,11 @@ def _row(case: Case, method: str, *, centres: bool) -> Row:
     )
 
 
-def _of_the_tree(case: Case, found: Discovery) -> dict[str, str]:
-    """Return the truth without the markers of trees that were told but not solved."""
-    others = {label for tree in found.step.findings["other_trees"] for label in tree}
-    return {label: limb for label, limb in case.truth.items() if label not in others}
+def _other_models(case: Case, method: str, trees: int) -> Iterator[TopologicalModel]:
+    """Yield what `discovery.tree` solves of the other trees; one that cannot be is left alone."""
+    for tree in range(2, trees + 1):
+        with suppress(KinesphereError):
+            yield discover(case.recording, DiscoverySettings(method=method, tree=tree)).model
 
 
 def _centres(case: Case, found: Discovery) -> dict[str, dict[str, float]]:

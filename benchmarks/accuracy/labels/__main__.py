@@ -4,7 +4,7 @@ import argparse
 import json
 import sys
 
-from benchmarks.accuracy.labels import broken, clean, elsewhere, missing
+from benchmarks.accuracy.labels import broken, clean, elsewhere, live, missing, trials
 from benchmarks.accuracy.labels.page import page
 from benchmarks.accuracy.labels.sources import ROOT, folder
 from kinesphere import __version__
@@ -18,11 +18,13 @@ PARTS = {
     "broken": broken.broken,
     "broken-fresh": lambda: broken.broken(broken.FRESH),
     "halves": elsewhere.halves,
-    "functional": elsewhere.functional,
+    "functional": trials.functional,
+    "static": trials.static,
     "creatures": elsewhere.creatures,
     "two-people": elsewhere.two_people,
     "refusals": elsewhere.refusals,
-    "speed": elsewhere.speed,
+    "speed": live.speed,
+    "live": live.live,
 }
 
 

@@ -1,4 +1,4 @@
-"""Other layouts: plates and a squat in halves, functional trials, bodies that are no people."""
+"""Other layouts: plates and a squat in halves, bodies that are no people; what does not fit."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -7,25 +7,59 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.accuracy.labels.sources import cmu, folder, model_of, others, score_of, shuffled
+from benchmarks.accuracy.labels.sources import cmu, folder, model_of, score_of, shuffled
 from kinesphere import read
 from kinesphere.data import Recording, Segment, TopologicalModel
 from kinesphere.errors import KinesphereError
 from kinesphere.io import read_segments
-from kinesphere.labelling import built_in_model, label, match_labels
+from kinesphere.labelling import built_in_model, label
+from kinesphere.labelling.matching import Match
 from kinesphere.labelling.pair_statistics import match_pair_statistics
+from kinesphere.labelling.template import template_of
 from kinesphere.skeleton import learn_model
 from kinesphere.skeleton.naming import mirror_pairs
 from kinesphere.skeleton.statistics import marker_statistics
 from kinesphere.synthetic import HAND, QUADRUPED, make_performance
 
+SQUATTING = "a similar layout of 53 markers, squatting"
+_SAME = ("LFHD", "LBHD", "LUPA", "LELB", "LFWT", "LBWT", "LKNE", "LSHN", "LANK", "LTOE", "LMT5")
+_LEFT = {
+    **dict(zip(_SAME, _SAME, strict=True)),
+    "LHIP": "LTHI",
+    "LHEL": "LHEE",
+    "LFSH": "LSHO",
+    "LOWR": "LWRB",
+    "LIWR": "LWRA",
+}
+COUNTERPARTS = {
+    **{x: x for x in ("C7", "T10", "CLAV", "STRN")},
+    **_LEFT,
+    **{f"R{x[1:]}": f"R{y[1:]}" for x, y in _LEFT.items()},
+}
+"""Marker of the squatting layout → the one of the 41 that sits in the same place."""
 
-def _score(name: str, model: TopologicalModel, recording: Recording, what: str) -> dict[str, Any]:
+
+def _told(labels: Sequence[str], match: Match, model: TopologicalModel) -> str:
+    """Return how many markers of another layout got the label of their own place and side."""
+    given = [
+        (label.split(":")[-1], model.labels[of])
+        for label, of, sure in zip(labels, match.labels, match.confidence, strict=True)
+        if of >= 0 and sure >= 0.1
+    ]
+    there = sum(COUNTERPARTS.get(own) == label for own, label in given)
+    sides = sum({own[0], label[0]} == {"L", "R"} for own, label in given)
+    return f"{there} are where the label's marker sits, {sides} on the other side of the body"
+
+
+def scored(name: str, model: TopologicalModel, recording: Recording, what: str) -> dict[str, Any]:
     """Label one recording whose labels are the model's, stripped and shuffled."""
     known = [c for c, x in enumerate(recording.labels) if x in model.labels]
     known = [c for c in known if recording.seen[:, c].sum() > 1]
     points, order = shuffled(recording.markers[:, known], np.random.default_rng(5))
-    truth = np.array([model.labels.index(recording.labels[known[k]]) for k in order])
+    # markers that the learning recording lacked have no label to be given
+    learnt = set(template_of(model).labels)
+    names = [recording.labels[known[k]] for k in order]
+    truth = np.array([model.labels.index(x) if x in learnt else -1 for x in names])
     start = time.perf_counter()
     match = match_pair_statistics(points, model)
     labels = np.where(match.confidence >= 0.1, match.labels, -1)
@@ -57,7 +91,7 @@ def halves() -> list[dict[str, Any]]:
         first = replace(first, analog=None, events=())
         model = _one_segment(first, name) if groups is None else learn_model([first], name, groups)
         second = replace(first, markers=recording.markers[n:])
-        rows.append(_score(name, model, second, "second half by the first (one person)"))
+        rows.append(scored(name, model, second, "second half by the first (one person)"))
     return rows
 
 
@@ -72,22 +106,6 @@ def _one_segment(recording: Recording, name: str) -> TopologicalModel:
         mirror=mirror_pairs(labels),
         statistics=(marker_statistics(recording, labels, name),),
     )
-
-
-def functional() -> list[dict[str, Any]]:
-    """Every functional trial by the model of each other one: one person."""
-    known = built_in_model("plugin-gait")
-    files = sorted((folder() / "functional").glob("*.c3d"))
-    trials = {f.stem: match_labels(read(f), known) for f in files}
-    rows = []
-    for learnt in ("Test_func_lhip", "Test_func_trunk"):
-        model = replace(
-            known, statistics=(marker_statistics(trials[learnt], known.labels, learnt),)
-        )
-        for name, trial in trials.items():
-            if name != learnt:
-                rows.append(_score(f"functional/{name}", model, trial, f"by {learnt} (one person)"))
-    return rows
 
 
 def creatures() -> list[dict[str, Any]]:
@@ -106,7 +124,7 @@ def creatures() -> list[dict[str, Any]]:
             statistics=(marker_statistics(first, same.model.labels, plan.name),),
         )
         second = replace(same.recording, markers=same.recording.markers[half:])
-        rows.append(_score(plan.name, model, second, "second half by the first (one body)"))
+        rows.append(scored(plan.name, model, second, "second half by the first (one body)"))
     return rows
 
 
@@ -154,7 +172,7 @@ def refusals() -> list[dict[str, Any]]:
         "three markers": (body[:, :3], ()),
         "one frame": (body[:1], ()),
         "standing still: one frame 200 times": (np.repeat(body[:1], 200, axis=0), ()),
-        "a similar layout of 53 markers, squatting": (squat.markers, ()),
+        SQUATTING: (squat.markers, ()),
         "Plug-in-Gait, standing trial": (static.markers, ()),
         "random walks": (
             np.cumsum(np.random.default_rng(7).normal(scale=0.01, size=(600, 41, 3)), axis=0),
@@ -167,54 +185,11 @@ def refusals() -> list[dict[str, Any]]:
         try:
             match = match_pair_statistics(np.asarray(points), model)
             given = int((match.confidence >= 0.1).sum())
-            rows.append({"what": what, "given": given, "of": points.shape[1], "said": match.note})
+            said = match.note
+            if what == SQUATTING:
+                said = _told(squat.labels, match, model)
+            rows.append({"what": what, "given": given, "of": points.shape[1], "said": said})
         except KinesphereError as error:
             rows.append({"what": what, "given": 0, "of": points.shape[1], "said": str(error)})
-        print(rows[-1], flush=True)
-    return rows
-
-
-def speed() -> list[dict[str, Any]]:
-    """Frames labelled a second in batch, and the time a live frame takes once locked on."""
-    from kinesphere.labelling.live import LiveLabels
-
-    rows = []
-    for name in ("135_02", "02_05"):
-        recording = cmu(name)
-        points, truth = shuffled(recording.markers, np.random.default_rng(8))
-        model = model_of(others(name))
-        match_pair_statistics(points, model)
-        start = time.perf_counter()
-        match_pair_statistics(points, model)
-        batch = time.perf_counter() - start
-        n = round(5 * recording.rate)
-        live = LiveLabels(recording.markers[:n], recording.labels, recording.rate)
-        rng = np.random.default_rng(9)
-        # ghosts make 50 points of the 41
-        low, high = np.nanmin(recording.markers), np.nanmax(recording.markers)
-        times, right, wrong = [], 0, 0
-        for frame in recording.markers[n:]:
-            crowd = np.concatenate([frame, rng.uniform(low, high, size=(9, 3))])
-            order = rng.permutation(len(crowd))
-            start = time.perf_counter()
-            given = live.label(crowd[order])
-            times.append(time.perf_counter() - start)
-            ok = given == np.where(order < 41, order, -1)
-            right += int((ok & (given >= 0)).sum())
-            wrong += int((~ok & (given >= 0)).sum())
-        rows.append(
-            {
-                "recording": name,
-                "frames": recording.n_frames,
-                "batch_frames_per_s": round(recording.n_frames / batch),
-                "live_points": 50,
-                "live_median_ms": round(1e3 * float(np.median(times)), 3),
-                "live_p99_ms": round(1e3 * float(np.percentile(times, 99)), 3),
-                "live_right": right,
-                "live_wrong": wrong,
-                "live_samples": int(recording.seen[n:].sum()),
-            }
-        )
-        del truth
         print(rows[-1], flush=True)
     return rows

@@ -3,7 +3,8 @@
 import json
 import math
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+import time
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -16,6 +17,10 @@ from rich.text import Text
 
 _WIDTH = 120
 """Columns where stdout is no terminal: wide enough for every table."""
+_MANY = 20
+"""What has so many parts is counted (frames), what has fewer is not (stages)."""
+_SOON = 3.0
+"""s after which the rest can be judged."""
 
 
 def stdout() -> Console:
@@ -139,32 +144,68 @@ def print_warnings(console: Console, warnings: Sequence[str], names: Collection[
             console.print(Padding(line, (0, 0, 0, 4), expand=False))
 
 
-def _silent(stage: str, done: int, total: int) -> None:
-    """Draw nothing."""
+class Advance:
+    """Tells on stderr how far long work has come: a bar, or nothing but what must be said."""
+
+    def __init__(self, bar: Progress | None = None) -> None:
+        self.bar = bar
+        self.task = None if bar is None else bar.add_task("reading", count="")
+        self.begun = (0.0, 0)
+        self.stage = ""
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
+        """Show that so much of a stage is done."""
+        if self.bar is None or self.task is None:
+            return
+        if stage != self.stage:
+            self.stage, self.begun = stage, (time.monotonic(), done)
+        self.bar.update(
+            self.task,
+            description=stage,
+            completed=done,
+            total=total,
+            count=self._count(done, total),
+        )
+
+    def say(self, warning: str) -> None:
+        """Print a warning at once."""
+        line = Text("! ", style="bold yellow").append(plain(warning), style="not bold yellow")
+        (self.bar.console if self.bar else stderr()).print(line, soft_wrap=True)
+
+    def _count(self, done: int, total: int) -> str:
+        """Return how many frames are done, and, once it can be told, how long the rest takes."""
+        if total < _MANY:
+            return ""
+        since, before = self.begun
+        passed = time.monotonic() - since
+        if passed < _SOON or done <= before:
+            return f"{done} of {total}"
+        left = passed * (total - done) / (done - before)
+        return (
+            f"{done} of {total}, about {left:.0f} s left"
+            if left < 100
+            else (f"{done} of {total}, about {left / 60:.0f} min left")
+        )
 
 
 @contextmanager
-def progress_bar(*, quiet: bool) -> Iterator[Callable[[str, int, int], None]]:
-    """Yield a function ``(stage, done, total)`` that draws a bar on stderr while work goes on.
+def progress_bar(*, quiet: bool) -> Iterator[Advance]:
+    """Yield what draws a bar on stderr while work goes on, ``(stage, done, total)``.
 
     Nothing is drawn when ``quiet``, or where stderr is no terminal.
     """
     console = stderr()
     if quiet or not console.is_terminal:
-        yield _silent
+        yield Advance()
         return
     bar = Progress(
         SpinnerColumn(),
         TextColumn("{task.description}"),
         BarColumn(bar_width=30),
+        TextColumn("{task.fields[count]}"),
         TimeElapsedColumn(),
         console=console,
         transient=True,
     )
     with bar:
-        task = bar.add_task("reading")
-
-        def advance(stage: str, done: int, total: int) -> None:
-            bar.update(task, description=stage, completed=done, total=total)
-
-        yield advance
+        yield Advance(bar)

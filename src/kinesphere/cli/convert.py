@@ -86,6 +86,8 @@ def write_as_set(found: object, target: Path, settings: "Settings | None") -> No
 def part_for(solution: "Solution", target: Path) -> object:
     """Return what of a solution the target's format holds: the parameters rather than markers.
 
+    Where there are no markers, as from cameras, limbs stand in for them.
+
     Raises
     ------
     UnknownFormat
@@ -98,7 +100,8 @@ def part_for(solution: "Solution", target: Path) -> object:
         return solution
     for part in parts:
         if _has_format(part, target):
-            return part
+            cameras_alone = part is solution.recording and not solution.recording.n_markers
+            return solution.motion if cameras_alone else part
     raise no_format(target, *(type(part).__name__ for part in parts))
 
 

@@ -36,7 +36,7 @@ def label(
     Writes everything the file held with the labels that could be told and how sure they are, and a
     page OUT.html beside it that shows where to look. Labels that are there already are kept; with
     [bold]--set labelling.existing=check[/bold] they are checked, with [bold]=ignore[/bold] given
-    anew.
+    anew. Where none could be given, nothing is written and the reason said.
 
     Examples: [bold]kinesphere label raw.c3d --model cmu41 -o labelled.c3d[/bold],
     [bold]kinesphere label raw.c3d --model mine.json -o labelled.c3d[/bold]
@@ -66,6 +66,7 @@ def label(
             raise BadArgument("--model names no model")
         progress("labelling", 1, 3)
         labelled = give_labels(recording, chosen, settings.labelling)
+        refuse_nothing(labelled, file)
         progress("writing", 2, 3)
         write(labelled, output)
         with replacing(page) as temporary:
@@ -77,6 +78,15 @@ def label(
         return
     show(summary)
     stdout().print(f"\nLabelled: {output}\nReport: {page}", soft_wrap=True)
+
+
+def refuse_nothing(recording: "Recording", file: Path) -> None:
+    """Raise BadRecording, with the reason, where no label was given: there is nothing to write."""
+    from kinesphere.errors import BadRecording
+
+    step = recording.history[-1]
+    if step.findings.get("labels_given") == 0:
+        raise BadRecording(f"{file}: {'; '.join(step.warnings)}")
 
 
 def describe(recording: "Recording") -> dict[str, Any]:

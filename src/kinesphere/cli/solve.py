@@ -125,5 +125,8 @@ def model_from_text(text: str | None) -> "TopologicalModel | str | None":
         )
     found = read(text)
     if not isinstance(found, TopologicalModel):
-        raise BadArgument(f"--model {text} holds a {type(found).__name__}, not a model")
+        raise BadArgument(
+            f"--model {text} holds a {type(found).__name__}, not a model; 'kinesphere model' "
+            "learns one from labelled recordings"
+        )
     return found

@@ -1,5 +1,8 @@
 """``kinesphere track``: cameras and images in, the usual solved folder out."""
 
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,12 +16,13 @@ from kinesphere.cli.options import (
     calibration_from_text,
     settings_from_options,
 )
+from kinesphere.errors import Interrupted
 
 if TYPE_CHECKING:
-    from kinesphere.markerless import TrackedMotion
     from kinesphere.pipeline.track import TrackedSolution
 
 STRIP = "overlays.jpg"
+VIDEO = "overlays.mp4"
 TABLE = "tracking.csv"
 
 
@@ -43,17 +47,24 @@ def track(
         ),
     ] = None,
     calibration_from: Annotated[
-        Path | None,
+        list[Path] | None,
         typer.Option(
             "--calibration-from",
             metavar="DIR",
-            help="Take axes and rest positions from a solved recording of the same person.",
+            help="Take axes and rest positions from a solved recording of the same person, by "
+            "markers or without; may be given again.",
         ),
     ] = None,
     facing: Annotated[
         str | None,
         typer.Option("--facing", metavar="WAY", help="As for 'kinesphere solve'."),
     ] = None,
+    video: Annotated[
+        bool,
+        typer.Option(
+            "--video/--no-video", help="Whether to make overlays.mp4; as long as the tracking."
+        ),
+    ] = True,
     assignments: SetOption = None,
     settings_file: SettingsOption = None,
     as_json: JsonOption = False,
@@ -61,12 +72,12 @@ def track(
     """Measure motion without markers, from several calibrated cameras.
 
     docs/markerless.md shows how a scene is written. The folder holds what 'kinesphere solve'
-    writes, the model drawn over every camera (overlays.jpg), and overlap and support of every
-    limb in every frame (tracking.csv).
+    writes, the model drawn over every camera (overlays.mp4, overlays.jpg), and overlap and support
+    of every limb in every frame (tracking.csv).
 
     Example: [bold]kinesphere track SCENE.toml -o squat[/bold]
     """
-    if calibration is not None and calibration_from is not None:
+    if calibration is not None and calibration_from:
         raise BadArgument("--calibration and --calibration-from exclude each other; give one")
     span = calibration_from_text(calibration)
 
@@ -78,21 +89,23 @@ def track(
     from kinesphere.io.scene import read_scene
 
     opencv()  # says how to get it, before anything else needs it
+    from kinesphere.cli.describe_tracking import describe_tracking, show_tracking
     from kinesphere.pipeline.track import solve_scene
 
     settings = settings_from_options(assignments, settings_file)
-    check_solution_place(output, [REPORT, STRIP, TABLE])
-    with progress_bar(quiet=as_json) as progress:
+    check_solution_place(output, [REPORT, STRIP, VIDEO, TABLE])
+    with progress_bar(quiet=as_json) as progress, stopped_as_by_hand():
         scene = read_scene(file)
         found = solve_scene(
             scene,
             calibration=span,
-            calibration_from=read_solved(calibration_from) if calibration_from else None,
+            calibration_from=[read_solved(folder) for folder in calibration_from or ()],
             facing=facing,  # type: ignore[arg-type]  # normalize names what it knows
             settings=settings,
             progress=progress,
+            notice=progress.say,
         )
-        report = write_tracked(found, output, progress)
+        report = write_tracked(found, output, video=video, progress=progress)
     solution = found.solution
     summary = {
         "file": str(file),
@@ -102,90 +115,56 @@ def track(
     }
     if as_json:
         print_json(summary)
-        return
-    show_solution(summary, solution)
-    show_tracking(summary["tracking"])
-    stdout().print(f"\nReport: {report}", soft_wrap=True)
+    else:
+        show_solution(summary, solution)
+        show_tracking(summary["tracking"])
+        stdout().print(f"\nReport: {report}", soft_wrap=True)
+    if (reached := found.tracked.n_reached) is not None:
+        raise Interrupted(
+            f"interrupted after {reached} of {scene.n_frames} frames; they are kept in {output}"
+        )
 
 
-def write_tracked(found: "TrackedSolution", output: Path, progress: Any = None) -> Path:
+@contextmanager
+def stopped_as_by_hand() -> Iterator[None]:
+    """Let a request to terminate, as a cluster sends it, do what Ctrl-C does."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def write_tracked(
+    found: "TrackedSolution", output: Path, *, video: bool = True, progress: Any = None
+) -> Path:
     """Write the solved folder with pictures, table and report; return where the report is."""
     from kinesphere.cli.files import REPORT
     from kinesphere.io import write_solution
     from kinesphere.io.images import encoded_image
     from kinesphere.report import report_html
-    from kinesphere.report.tracking import overlay_strip, tracking_section, tracking_table
+    from kinesphere.report.overlay_film import overlay_film
+    from kinesphere.report.strip import overlay_strip
+    from kinesphere.report.tracking import tracking_section, tracking_table
 
     strip, frames = overlay_strip(found.scene, found.tracked, progress=progress)
-    picture = encoded_image(strip)
-    section = tracking_section(found.scene, found.tracked, picture, frames)
-    write_solution(
-        found.solution,
-        output,
-        {
-            REPORT: report_html(found.solution, found.scene.name, section),
-            STRIP: picture,
-            TABLE: tracking_table(found.scene, found.tracked),
-        },
-    )
-    return output / REPORT
-
-
-def describe_tracking(tracked: "TrackedMotion", cameras: list[str]) -> dict[str, Any]:
-    """Return overlap by camera, and support and lost frames by limb."""
-    import numpy as np
-
-    def mean(values: Any) -> float:
-        known = values[np.isfinite(values)]
-        return float(known.mean()) if len(known) else float("nan")
-
-    def least(values: Any) -> float:
-        known = values[np.isfinite(values)]
-        return float(known.min()) if len(known) else float("nan")
-
-    return {
-        "n_frames": tracked.n_frames,
-        "n_solved": int(tracked.solved.sum()),
-        "overlap_mean": mean(tracked.overlap),
-        "cameras": [
-            {"name": name, "overlap_mean": mean(o), "overlap_least": least(o)}
-            for name, o in zip(cameras, tracked.overlap.T, strict=True)
-        ],
-        "limbs": [
-            {
-                "name": name,
-                "support_mean": mean(tracked.support[:, i]),
-                "support_least": least(tracked.support[:, i]),
-                "frames_lost": int(tracked.lost[:, i].sum()),
-            }
-            for i, name in enumerate(tracked.limb_names)
-        ],
-        "seconds": dict(tracked.seconds),
+    files: dict[str, str | bytes] = {
+        STRIP: encoded_image(strip),
+        TABLE: tracking_table(found.scene, found.tracked),
     }
-
-
-def show_tracking(found: dict[str, Any]) -> None:
-    """Print overlap by camera, and the limbs that were lost or hardly supported."""
-    from kinesphere.cli.console import print_table, print_title, stdout
-
-    console = stdout()
-    print_title(console, "Cameras", f"{found['n_solved']} of {found['n_frames']} frames solved")
-    rows = [
-        (c["name"], _share(c["overlap_mean"]), _share(c["overlap_least"])) for c in found["cameras"]
-    ]
-    print_table(console, ("camera", "overlap, mean", "least"), rows, "lrr")
-    print_title(console, "Limbs", "support: share of the visible rim that speaks for the pose")
-    limbs = [
-        (
-            limb["name"],
-            _share(limb["support_mean"]),
-            _share(limb["support_least"]),
-            str(limb["frames_lost"] or ""),
-        )
-        for limb in found["limbs"]
-    ]
-    print_table(console, ("limb", "support, mean", "least", "frames lost"), limbs, "lrrr")
-
-
-def _share(value: float) -> str:
-    return "–" if value != value else f"{value:.2f}"
+    poster = b""
+    if video:
+        with suppress(KeyboardInterrupt):  # who will not wait for it keeps the rest
+            files[VIDEO], first = overlay_film(found.scene, found.tracked, progress)
+            poster = encoded_image(first)
+    section = tracking_section(
+        found.scene,
+        found.tracked,
+        encoded_image(strip),
+        frames,
+        VIDEO if VIDEO in files else None,
+        poster,
+    )
+    files[REPORT] = report_html(found.solution, found.scene.name, section)
+    write_solution(found.solution, output, files)
+    return output / REPORT

@@ -5,11 +5,15 @@ import numpy as np
 from kinesphere.comparison.alignment import WorldAlignment
 from kinesphere.comparison.result import JointComparison, ParameterComparison
 from kinesphere.comparison.sides import Side, relative, unknown_twists
+from kinesphere.data import Array
 from kinesphere.data.isb import GIMBAL_MARGIN_DEG, isb_joint, joint_angles
 
 _TILTED = np.deg2rad(5.0)  # between two verticals
 _UNLIKE = 0.5
 """Median correlation of the clinical angles, or of the bends, below which a warning is loud."""
+
+_STILL = np.deg2rad(5.0)
+"""Range, 5 to 95 %, below which a joint keeps still."""
 
 
 def warnings_of(
@@ -28,8 +32,9 @@ def warnings_of(
         Joints that both have; ``joints`` are those that could be compared.
     """
     said = []
-    alike = [p.after.correlation for p in parameters if p.kind == "bend"]
-    alike = [value for value in alike if np.isfinite(value)]
+    # joints that keep still differ by noise alone, which correlates with nothing
+    bends = [p for p in parameters if p.kind == "bend" and _moves(p.first)]
+    alike = [p.after.correlation for p in bends if np.isfinite(p.after.correlation)]
     if alike and float(np.median(alike)) < _UNLIKE:
         said.append(
             f"the joints do not bend alike (median correlation {np.median(alike):.2f}): these do "
@@ -64,6 +69,11 @@ def warnings_of(
             f"which are left out of its first and third angle: {', '.join(near)}"
         )
     return tuple(said)
+
+
+def _moves(angle: Array) -> bool:
+    known = angle[np.isfinite(angle)]
+    return bool(len(known) and np.ptp(np.percentile(known, [5, 95])) > _STILL)
 
 
 def _near_gimbal(side: Side, name: str) -> bool:

@@ -131,3 +131,8 @@ class Camera:
         # a pixel's centre is at an integer, so its corner, which stays, is at minus one half
         fit = np.array([[a, 0, (a - 1) / 2], [0, b, (b - 1) / 2], [0, 0, 1.0]])
         return replace(self, width=width, height=height, matrix=fit @ self.matrix)
+
+    def cropped(self, left: int, top: int, right: int, bottom: int) -> "Camera":
+        """Return the camera of a part of the image, ``right`` and ``bottom`` left out."""
+        shift = np.array([[1, 0, -left], [0, 1, -top], [0, 0, 1.0]])
+        return replace(self, width=right - left, height=bottom - top, matrix=shift @ self.matrix)

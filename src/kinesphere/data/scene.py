@@ -132,6 +132,11 @@ class Scene:
         return next(iter(self.frames(index, index + 1)))
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """What went wrong while reading images so far, a sentence each."""
+        return tuple(getattr(self.footage, "notes", ()))
+
+    @property
     def times(self) -> Array:
         """(n_frames,) s since frame 0."""
         return np.arange(self.n_frames) / self.rate

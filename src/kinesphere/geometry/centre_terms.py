@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from kinesphere.geometry.centre_views import Turning, View
 from kinesphere.geometry.medians import column_medians
-from kinesphere.geometry.rigid import point_covariance
+from kinesphere.geometry.pose_errors import point_covariance
 
 Array = NDArray[np.float64]
 

@@ -22,6 +22,10 @@ class Turning:
     """(6, 6) uncertainty of its pose, as `pose_covariance` returns it."""
     noise: float
     """m, what a point fixed in both limbs may stray in each direction for other reasons."""
+    skin: Array | None = None
+    """(6, 6) error of its pose that goes with the joint, at the joint's rms rotation."""
+    skin_seeing: Array | None = None
+    """(6, 6) the same of the seeing limb's pose; both or neither."""
 
     @cached_property
     def known(self) -> NDArray[np.bool_]:

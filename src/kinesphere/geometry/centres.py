@@ -10,6 +10,7 @@ from kinesphere.geometry.centre_terms import find_information, find_terms
 from kinesphere.geometry.centre_views import Turning as Turning
 from kinesphere.geometry.centre_views import View as View
 from kinesphere.geometry.medians import column_medians
+from kinesphere.geometry.skin import FEW, fit_through_skin, hinge_axis
 from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
@@ -67,6 +68,10 @@ def fit_centre(
     this the fit would flee to the axis (errors in variables; as in Sampson's distance the weight
     follows the centre).
 
+    Where it is known how much of either limb's markers goes with the joint (`Turning.skin`), the
+    steady centre alone counts, and that movement is fitted along: see
+    `kinesphere.geometry.skin.fit_through_skin`. Distances would bring skin back in.
+
     The expectation ``expected ± spread`` speaks where the motion does not. Residuals of similar
     poses are not independent (soft tissue), so frames count by the distinct poses they show.
 
@@ -82,28 +87,22 @@ def fit_centre(
         How many times larger errors are that the fit absorbs (skin that moves with the pose) than
         those it leaves as residuals.
     hinge : (3,), optional
-        Direction of the axis of a joint known to have only one. Where the motion knows the centre
-        least along it, too, the expectation holds ``tighter`` times tighter there: what residuals
-        tell about that direction is how they were spoilt.
+        Direction of the axis of a joint known to have only one. Where the motion turns about one
+        axis, or knows the centre least along it, too, the expectation holds ``tighter`` times
+        tighter there: what residuals tell about that direction is how they were spoilt.
     tighter
     rounds
         Most steps of the descent.
     """
     n_poses = count_poses(view, expected)
-    # distances and orientation are two readings of the same sightings
-    looks = n_poses / hidden**2 / (1 if view.turning is None else 2)
     x, algebraic = expected, sphere_centre(view.points, expected)
     if np.linalg.norm(algebraic - expected) < FAR * spread:
         x = min((expected, algebraic), key=lambda start: _cost(view, start))
     prior = np.eye(3) / spread**2
-    x = _descend(view, x, expected, 0.01 * prior, looks, rounds)
-    if hinge is not None:
-        values, vectors = np.linalg.eigh(find_information(view, x, looks))
-        weakest = vectors[:, 0]
-        if abs(weakest @ hinge) > ALIGNED and values[0] * spread**2 < FIRM:
-            prior = prior + (tighter**2 - 1) / spread**2 * np.outer(weakest, weakest)
-    x = _descend(view, x, expected, prior, looks, rounds)
-    information = find_information(view, x, looks)
+    x, information = _fit(view, x, expected, 0.01 * prior, hidden, rounds)
+    if hinge is not None and (along := _open_axis(view, information, spread, hinge)) is not None:
+        prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
+    x, information = _fit(view, x, expected, prior, hidden, rounds)
     return CentreFit(
         centre=x,
         noise=_robust_noise(view, x),
@@ -112,6 +111,31 @@ def fit_centre(
         covariance=_inverse(information, prior, 1.0),
         n_poses=n_poses,
     )
+
+
+def _open_axis(view: View, information: Array, spread: float, hinge: Array) -> Array | None:
+    """Return the direction in which a hinge's centre is left to its expectation, (3,)."""
+    if view.turning is not None and view.turning.skin is not None:
+        along = hinge_axis(view.turning.rotations)
+        if along is not None:
+            return along
+    values, vectors = np.linalg.eigh(information)
+    aligned = abs(vectors[:, 0] @ hinge) > ALIGNED
+    return vectors[:, 0] if aligned and values[0] * spread**2 < FIRM else None
+
+
+def _fit(
+    view: View, x: Array, expected: Array, prior: Array, hidden: float, rounds: int
+) -> tuple[Array, Array]:
+    """Return the centre, and what the motion tells about it, (3, 3) 1/m²."""
+    turning, n_poses = view.turning, count_poses(view, expected)
+    if turning is not None and turning.skin is not None and turning.known.sum() >= FEW:
+        fit = fit_through_skin(view, x, expected, prior, n_poses, hidden=hidden, rounds=rounds)
+        return fit.centre, fit.information
+    # distances and orientation are two readings of the same sightings
+    looks = n_poses / hidden**2 / (1 if turning is None else 2)
+    x = _descend(view, x, expected, prior, looks, rounds)
+    return x, find_information(view, x, looks)
 
 
 def count_poses(view: View, centre: Array) -> int:

@@ -15,7 +15,7 @@ from kinesphere.io.bvh_settings import BvhSettings
 from kinesphere.io.c3d import read_c3d, write_c3d
 from kinesphere.io.gltf import write_solution_gltf
 from kinesphere.io.isb_csv import write_isb_angles
-from kinesphere.io.joint_points import with_joints, without_notes
+from kinesphere.io.joint_points import recording_of_joints, with_joints, without_notes
 from kinesphere.io.opensim import write_osim
 from kinesphere.io.opensim_joints import opensim_name
 from kinesphere.io.opensim_motion import write_mot
@@ -44,7 +44,7 @@ FILES = (
 """What ``write_solution`` writes by itself."""
 ISB_ANGLES = "isb_angles.csv"
 """Written where joints have names; older folders are whole without it."""
-_OF_CAMERAS = ("overlays.jpg", "tracking.csv")
+_OF_CAMERAS = ("overlays.jpg", "overlays.mp4", "tracking.csv")
 _LEFT_BEHIND = (".DS_Store", "Thumbs.db", "desktop.ini")
 _BESIDE = (ISB_ANGLES, "report.html", *_OF_CAMERAS, *_LEFT_BEHIND)
 """What may stand beside them: reports, pictures, and what file managers leave behind."""
@@ -147,8 +147,13 @@ def read_solution(directory: str | Path) -> Solution:
 
 
 def _model_markers(solution: Solution) -> Recording:
-    """Return the markers the OpenSim model has, as it names them, in the world it lives in."""
+    """Return the markers the OpenSim model has, as it names them, in the world it lives in.
+
+    Of a solution without markers, where its limbs hang and end.
+    """
     recording = solution.recording
+    if not recording.n_markers:
+        return recording_of_joints(solution.motion)
     owned = {label for limb in solution.skeleton.limbs for label in limb.markers}
     at = [i for i, label in enumerate(recording.labels) if label in owned]
     return replace(

@@ -1,4 +1,7 @@
-"""How kernels are compiled: once, cached beside the package, NaN kept honest (no fastmath)."""
+"""How kernels are compiled: once, cached beside the package, NaN kept honest (no fastmath).
+
+They let other threads run meanwhile: a live stream goes on while a body is recognised.
+"""
 
 from collections.abc import Callable
 from typing import Any, TypeVar, cast
@@ -15,6 +18,6 @@ def kernel(function: _F) -> _F:
     anew.
     """
     try:
-        return cast(_F, numba.njit(cache=True, error_model="numpy")(function))
+        return cast(_F, numba.njit(cache=True, nogil=True, error_model="numpy")(function))
     except RuntimeError:  # numba: "no locator available"
-        return cast(_F, numba.njit(error_model="numpy")(function))
+        return cast(_F, numba.njit(nogil=True, error_model="numpy")(function))

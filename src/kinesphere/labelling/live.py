@@ -1,8 +1,10 @@
 """Labels frame by frame, once a body is known: points come in as a crowd, labels go out.
 
 Each frame, markers are expected where they were heading and matched to the points as a whole
-(Hungarian method). One that went out of sight comes back where its distances to its steadiest
-neighbours say it is, not where it was last seen.
+(Hungarian method). Every label is then held to its own distances: one that another point fits gives
+way, so that two markers exchanged in passing are back in their places at once. One that went out of
+sight comes back where its distances to its steadiest neighbours say it is, not where it was last
+seen. Distances are measured on, as long as they fit.
 """
 
 import numpy as np
@@ -12,18 +14,26 @@ from scipy.optimize import linear_sum_assignment
 from kinesphere.data import Array
 from kinesphere.errors import BadRecording
 from kinesphere.kernels.jit import kernel
-from kinesphere.labelling.own_distances import OwnDistances, own_distances
+from kinesphere.labelling.crowd import FAR, expected_distances, reach_at
+from kinesphere.labelling.own_distances import OwnDistances, from_moments, moments
 
-REACH = 0.04
-"""m, farthest a point may lie from where its marker is expected, beside what acceleration adds."""
-ACCELERATION = 150.0
-"""m/s², of feet that strike and fists: from step to step a marker strays by it times dt²."""
-FAR = 10.0
-"""m, stands for never in the assignment."""
 SMOOTH = 1.0
 """How much of a new step enters the one that is expected next: at 120 Hz the last one is best."""
 BACK = 2.5
 """Mean square deviation of distances up to which a point is a marker that comes back."""
+DENIED = 9.0
+"""Mean square deviation from which on a label may be exchanged for one that fits: a movement not
+made before deviates as much, but fits no other label."""
+LOST = 100.0
+"""Mean square deviation from which on a point is no longer that marker: ten times the usual..."""
+GONE_S = 0.25
+"""...for so many seconds."""
+LEARNS = 4.0
+"""Mean square deviation up to which a marker's distances are measured on."""
+RENEWED_S = 1.0
+"""s between two measurements of all distances."""
+NEIGHBOURS = 6
+"""Steadiest neighbours that a marker is held to."""
 
 
 class LiveLabels:
@@ -53,14 +63,17 @@ class LiveLabels:
                 "four at least are needed"
             )
         self.labels = labels
-        self._reach = REACH + ACCELERATION / rate**2
-        self.own: OwnDistances = own_distances(labelled)
-        self._ranked = np.argsort(
-            np.where(np.isnan(self.own.deviation), np.inf, self.own.deviation), axis=1
-        )
+        n = len(labels)
+        self._rate = rate
+        self._reach = reach_at(rate)
+        self._sums = np.zeros((3, n, n))
+        moments(np.ascontiguousarray(labelled), 0, n, *self._sums)
+        self._measure()
         self._here = np.where(seen[-1][:, None], labelled[-1], np.nan)
         step = labelled[-1] - labelled[-2] if len(labelled) > 1 else np.zeros_like(labelled[-1])
         self._step = np.nan_to_num(step)
+        self._lost = np.zeros(n, dtype=np.int64)
+        self._frame = 0
 
     def label(self, points: Array) -> NDArray[np.int64]:
         """Return the index of each point's label, (n_points,), −1 for none.
@@ -74,20 +87,64 @@ class LiveLabels:
         given = np.full(n, -1, dtype=np.int64)
         points = np.ascontiguousarray(points, dtype=np.float64)
         apart = np.empty((len(self._here), n))
-        _expected_distances(self._here, self._step, points, self._reach, FAR, apart)
+        expected_distances(self._here, self._step, points, self._reach, FAR, apart)
         rows, columns = linear_sum_assignment(apart)
         near = apart[rows, columns] < FAR
         given[columns[near]] = rows[near]
         here = np.full_like(self._here, np.nan)
         here[rows[near]] = points[columns[near]]
-        if (given < 0).any() and len(rows[near]) < len(self.labels):
+        fit = np.empty(len(here))
+        self._fit(here, fit)
+        if (fit > DENIED).any():
+            self._hold(given, here, fit)
+        if (given < 0).any() and (given >= 0).sum() < len(self.labels):
             self._bring_back(points, given, here)
+        self._learn(here, fit)
         moved = here - self._here
         known = np.isfinite(moved[:, 0])
         self._step[known] += SMOOTH * (moved[known] - self._step[known])
         self._step[~known] = 0.0
         self._here = here
         return given
+
+    def placed(self, points: Array) -> NDArray[np.int64]:
+        """Return labels of points of the last frame, (n_points,), −1 for those that bear none."""
+        same = (np.asarray(points)[:, None] == self._here).all(axis=2)
+        return np.where(same.any(axis=1), same.argmax(axis=1), -1)
+
+    def _fit(self, here: Array, fit: Array) -> None:
+        _own_fit(here, self.own.mean, self.own.deviation, self._ranked, fit)
+
+    def _hold(self, given: NDArray[np.int64], here: Array, fit: Array) -> None:
+        """Exchange labels that fit each other's points, and take away what has long been lost."""
+        doubted = np.flatnonzero(fit > DENIED)
+        if len(doubted) > 1:
+            held = np.full(len(here), -1, dtype=np.int64)
+            held[given[given >= 0]] = np.flatnonzero(given >= 0)
+            without = here.copy()
+            without[doubted] = np.nan
+            cost = np.empty((len(doubted), len(doubted)))
+            self._costs(here[doubted], doubted, without, cost)
+            rows, columns = linear_sum_assignment(cost)
+            moved = rows[(rows != columns) & (cost[rows, columns] <= BACK)]
+            # a label goes only where another one leaves: chains that end elsewhere stay
+            while not np.isin(columns[moved], moved).all():
+                moved = moved[np.isin(columns[moved], moved)]
+            into = doubted[columns[moved]]
+            places = here[into].copy()
+            given[held[into]] = doubted[moved]
+            here[doubted[moved]] = places
+            self._fit(here, fit)
+        self._lost = np.where(fit > LOST, self._lost + 1, 0)
+        gone = self._lost > GONE_S * self._rate
+        if gone.any():
+            given[np.isin(given, np.flatnonzero(gone))] = -1
+            here[gone] = np.nan
+
+    def _costs(self, points: Array, labels: NDArray[np.intp], here: Array, cost: Array) -> None:
+        _distance_costs(
+            points, labels, here, self.own.mean, self.own.deviation, self._ranked, FAR, cost
+        )
 
     def _bring_back(self, points: Array, given: NDArray[np.int64], here: Array) -> None:
         """Label points that are where an unseen marker must be."""
@@ -96,27 +153,49 @@ class LiveLabels:
         if not len(loose) or not len(gone):
             return
         cost = np.empty((len(gone), len(loose)))
-        _distance_costs(
-            points[loose], gone, here, self.own.mean, self.own.deviation, self._ranked, FAR, cost
-        )
+        self._costs(points[loose], gone, here, cost)
         rows, columns = linear_sum_assignment(cost)
         for r, c in zip(rows, columns, strict=True):
             if cost[r, c] <= BACK:
                 given[loose[c]] = gone[r]
                 here[gone[r]] = points[loose[c]]
 
+    def _learn(self, here: Array, fit: Array) -> None:
+        """Measure distances on, of markers that keep theirs."""
+        self._frame += 1
+        sure = np.where((fit <= LEARNS)[:, None], here, np.nan)
+        moments(sure[None], 0, len(here), *self._sums)
+        if self._frame >= RENEWED_S * self._rate:
+            self._frame = 0
+            self._measure()
+
+    def _measure(self) -> None:
+        self.own: OwnDistances = from_moments(*self._sums)
+        self._ranked = np.argsort(
+            np.where(np.isnan(self.own.deviation), np.inf, self.own.deviation), axis=1
+        )
+
 
 @kernel
-def _expected_distances(
-    here: Array, step: Array, points: Array, reach: float, far: float, apart: Array
+def _own_fit(
+    here: Array, mean: Array, deviation: Array, ranked: NDArray[np.int64], fit: Array
 ) -> None:
-    """Fill how far each point is from where each marker is expected, ``far`` beyond reach."""
+    """Fill the mean square deviation of each marker's distances, NaN where too few are known."""
     for i in range(here.shape[0]):
-        for k in range(points.shape[0]):
+        total, used = 0.0, 0
+        for s in range(ranked.shape[1]):
+            j = ranked[i, s]
+            if j == i or not np.isfinite(deviation[i, j]) or not np.isfinite(here[j, 0]):
+                continue
             square = 0.0
             for x in range(3):
-                square += (points[k, x] - here[i, x] - step[i, x]) ** 2
-            apart[i, k] = np.sqrt(square) if square <= reach * reach else far
+                square += (here[i, x] - here[j, x]) ** 2
+            z = (np.sqrt(square) - mean[i, j]) / deviation[i, j]
+            total += z * z
+            used += 1
+            if used == NEIGHBOURS:
+                break
+        fit[i] = total / used if used >= 3 and np.isfinite(here[i, 0]) else np.nan
 
 
 @kernel
@@ -145,6 +224,6 @@ def _distance_costs(
                 z = (np.sqrt(square) - mean[i, j]) / deviation[i, j]
                 total += z * z
                 used += 1
-                if used == 6:
+                if used == NEIGHBOURS:
                     break
             cost[r, k] = min(total / used, far) if used >= 3 else far

@@ -40,8 +40,8 @@ def own_distances(points: Array, floor: float = FLOOR) -> OwnDistances:
     """Measure the distances of labelled points (n_frames, n_labels, 3) m, NaN where not seen."""
     n = points.shape[1]
     mean, square, count = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
-    _moments(np.ascontiguousarray(points), 0, n, mean, square, count)
-    return _from_moments(mean, square, count, floor)
+    moments(np.ascontiguousarray(points), 0, n, mean, square, count)
+    return from_moments(mean, square, count, floor)
 
 
 def measured_anew(
@@ -50,15 +50,16 @@ def measured_anew(
     """Return the distances with those of one label measured on other points."""
     n = points.shape[1]
     mean, square, count = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
-    _moments(np.ascontiguousarray(points), label, label + 1, mean, square, count)
-    anew = _from_moments(mean, square, count, floor)
+    moments(np.ascontiguousarray(points), label, label + 1, mean, square, count)
+    anew = from_moments(mean, square, count, floor)
     middle, deviation = own.mean.copy(), own.deviation.copy()
     for one, other in ((middle, anew.mean), (deviation, anew.deviation)):
         one[label] = one[:, label] = other[label]
     return OwnDistances(middle, deviation)
 
 
-def _from_moments(mean: Array, square: Array, count: Array, floor: float) -> OwnDistances:
+def from_moments(mean: Array, square: Array, count: Array, floor: float = FLOOR) -> OwnDistances:
+    """Return distances from their sums, their squares' and how many they are, (n, n) each."""
     enough = count >= FEWEST_FRAMES
     middle = np.where(enough, mean / np.maximum(count, 1), np.nan)
     variance = np.maximum(square / np.maximum(count, 1) - np.nan_to_num(middle) ** 2, 0.0)
@@ -66,9 +67,10 @@ def _from_moments(mean: Array, square: Array, count: Array, floor: float) -> Own
 
 
 @kernel
-def _moments(
+def moments(
     points: Array, first: int, last: int, total: Array, square: Array, count: Array
 ) -> None:
+    """Add the distances of labels first ≤ i < last, and their squares, to what is there."""
     n_frames, n = points.shape[0], points.shape[1]
     step = max(1, n_frames // 2000)
     for t in range(0, n_frames, step):

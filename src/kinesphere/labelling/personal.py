@@ -12,6 +12,7 @@ import numpy as np
 
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.signature import signature
+from kinesphere.labelling.blocks import twins
 from kinesphere.labelling.kernels import linear_terms
 from kinesphere.labelling.labelled import Labelled, give, length_of
 from kinesphere.labelling.own_distances import FLOOR, own_distances
@@ -46,6 +47,7 @@ class _Person(NamedTuple):
     template: Template
     scale: float
     near: Labels
+    twin: Labels
     into: Labels
     """(n_template_labels,) index into the model's labels."""
 
@@ -91,7 +93,8 @@ def recognise_rest(
     template = template_of(model)
     into = np.array([model.labels.index(x) for x in template.labels], dtype=np.int64)
     personal, scale = personal_template(template, state.points[:, into])
-    person = _Person(personal, scale, nearest_labels(personal.mean), into)
+    near, twin = nearest_labels(personal.mean), twins(model, template.labels)
+    person = _Person(personal, scale, near, twin, into)
     least = max(2, round(SHORTEST_S * rate))
     loose = [k for k, of in enumerate(state.labels) if of < 0 and length_of(state, k) >= least]
     points = points_of(markers, [state.tracks[k] for k in loose])
@@ -134,7 +137,7 @@ def _assigned(labelled: Array, loose: Array, person: _Person) -> tuple[Labels, A
     labels = problem.descend(start, nullable=True)
     rng = np.random.default_rng(SEED)
     labels, _ = shake(problem, labels, person.near, rng, nullable=True)
-    labels, _, margins = doubt(problem, labels, person.near, nullable=True)
+    labels, _, margins = doubt(problem, labels, person.near, person.twin, nullable=True)
     if (labels[: len(held)] != held).any():
         return none
     terms = linear_terms(labels, problem.costs)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array
+from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.pair_distances import pair_distances
 from kinesphere.geometry.signature import FRAMES, Signature, evenly_spread, scale_of
 
@@ -19,9 +19,20 @@ Standing quietly is less, any movement ten times as much."""
 
 def is_still(found: Signature) -> bool:
     """Tell whether nothing moves against anything else."""
-    pairs = found.std[np.triu_indices(found.n, 1)]
+    return _still(found.mean, found.std)
+
+
+def learnt_standing(model: TopologicalModel) -> bool:
+    """Tell whether nothing moves in any of the recordings a model was learnt from."""
+    return all(_still(one.mean, one.deviation) for one in model.statistics)
+
+
+def _still(mean: Array, deviation: Array) -> bool:
+    known = np.isfinite(mean).sum(axis=1) > 1
+    pairs = deviation[np.triu_indices(len(deviation), 1)]
     pairs = pairs[np.isfinite(pairs)]
-    return not len(pairs) or float(np.median(pairs)) < STILL * scale_of(found.mean)
+    limit = STILL * scale_of(mean[np.ix_(known, known)]) if known.any() else 0.0
+    return not len(pairs) or float(np.median(pairs)) < limit
 
 
 def plausible(points: Array, seen: NDArray[np.bool_], n_labels: int) -> NDArray[np.intp]:

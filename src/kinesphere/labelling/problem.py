@@ -21,7 +21,7 @@ alike where all markers are there, .15 better than .05 where some are missing.""
 UNKNOWN = 3.0
 """Nats from which on a pair fits its labels worse than nothing does: right pairs have 1 on average,
 a point at a random place with a random spread 4 to 5."""
-INTO_FREE = 0.125
+INTO_FREE = 0.09
 """What a nat counts that keeps a point from a label nobody bears. An exchange of two points must
 fit both of them worse; one that slides into the place of a missing neighbour is held by its own
 distances alone, and those differ between people."""
@@ -145,13 +145,26 @@ class Problem:
         return least, rival
 
 
-def problem_of(found: Signature, scale: float, template: Template) -> Problem:
-    """Return the costs of points with this signature, ``scale`` being theirs."""
+def problem_of(
+    found: Signature, scale: float, template: Template, like: tuple[Problem, int] | None = None
+) -> Problem:
+    """Return the costs of points with this signature, ``scale`` being theirs.
+
+    Parameters
+    ----------
+    like
+        A problem of the same points whose template differs by one label only, and that label:
+        the other costs are taken over.
+    """
     n = found.n
     mean = np.nan_to_num(found.mean / scale)
     std = np.nan_to_num(found.std / scale)
     weight = np.minimum(found.frames / FEWEST_FRAMES, 1.0)
-    costs = np.zeros((n, template.n, n, template.n), dtype=np.float32)
+    if like is None:
+        costs, only = np.zeros((n, template.n, n, template.n), dtype=np.float32), -1
+    else:
+        costs, only = like[0].costs.copy(), like[1]
+        costs[:, only] = costs[:, :, :, only] = 0.0
     kernels.pair_costs(
         mean,
         np.log(std + DEVIATION_FLOOR),
@@ -163,6 +176,7 @@ def problem_of(found: Signature, scale: float, template: Template) -> Problem:
         template.log_variance,
         max(STILLER, 1 / template.n_recordings),
         UNKNOWN,
+        only,
         costs,
     )
     holding = [np.flatnonzero((template.quadruples == i).any(axis=1)) for i in range(template.n)]

@@ -8,6 +8,7 @@ from kinesphere.data import Array
 from kinesphere.labelling import kernels
 from kinesphere.labelling.blocks import Moves
 from kinesphere.labelling.problem import INTO_FREE, Labels, Problem
+from kinesphere.labelling.slides import slide
 
 STEPS = 20_000
 """Exchanges tried in one annealing of 41 markers; in proportion to the square of their number."""
@@ -161,12 +162,12 @@ def shake(
 
 
 def doubt(
-    problem: Problem, labels: Labels, near: Labels, *, nullable: bool
+    problem: Problem, labels: Labels, near: Labels, twin: Labels, *, nullable: bool
 ) -> tuple[Labels, float, Array]:
     """Ask of every label what else could be, and go there if it is better.
 
     Each point is given its best other label, and each free label each point nearby, while the
-    neighbours settle anew around it: chains of markers slide by one where one of them is missing.
+    neighbours settle anew around it; and chains of markers slide by one, where one is missing.
 
     Returns
     -------
@@ -176,11 +177,13 @@ def doubt(
     energy = problem.energy(labels)
     for _ in range(ROUNDS):
         margins, rivals = problem.least_changes(labels)
+        rises, slid, reached = slide(problem, labels, near, twin)
+        margins = np.minimum(margins, INTO_FREE * rises)
+        best = (reached, slid) if reached < energy - 1e-6 else None
         tries = [(a, int(j)) for a, j in enumerate(rivals) if j >= 0]
         for free in np.flatnonzero(problem.holders(labels) < 0):
             held = problem.holders(labels)[near[free, 1:SLIDING]]
             tries += [(int(a), int(free)) for a in held if a >= 0]
-        best = None
         for a, j in tries:
             changed = _settled(problem, labels, a, j, near, nullable=nullable)
             reached = problem.energy(changed)

@@ -26,8 +26,9 @@ class LabellingSettings:
     tracks: str = setting(
         "auto",
         "Whether a column of the file is one marker throughout (columns), or identity ends with "
-        "every gap (runs); auto: columns, unless there are many more of them than labels.",
-        choices=("auto", "columns", "runs"),
+        "every gap (runs) or with every frame (points); auto: columns, unless there are many more "
+        "of them than labels, or points jump between them.",
+        choices=("auto", "columns", "runs", "points"),
     )
     least_confidence: float = setting(
         0.1,

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from kinesphere.data import Array, TopologicalModel
+from kinesphere.labelling.exchanged import exchange_labels
 from kinesphere.labelling.labelled import Labelled, give
 from kinesphere.labelling.matching import Labeller
 from kinesphere.labelling.personal import recognise_rest
@@ -97,6 +98,12 @@ def label_through_time(
         given = recognise_rest(state, markers, rate, model, least_confidence)
         if not (changed or given):
             break
+    # by now most markers are one point each: what was exchanged while they were few shows
+    for _ in range(ROUNDS):
+        if not exchange_labels(state, markers, model, least_confidence, fixed):
+            break
+        recheck(state, markers, fixed)
+        propagate(state, markers, rate, fixed, kin, late=True)
     return state
 
 

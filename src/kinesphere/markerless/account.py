@@ -5,12 +5,17 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array, Frame, History, Mask, Scene
+from kinesphere.data import Array, Frame, History, Mask, Scene, Surface
+from kinesphere.data.joint_names import joint_above
+from kinesphere.data.spans import frame_spans
 from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.pose import posed
 from kinesphere.markerless.tracked import TrackedMotion
 from kinesphere.markerless.tracking import Found
+
+_OFTEN = 0.02
+"""A limb lost in more of the frames is spoken of."""
 
 
 @dataclass(eq=False)
@@ -29,9 +34,11 @@ class Account:
         self._rotations = np.full((n, limbs, 3, 3), np.nan)
         self._origins = np.full((n, limbs, 3), np.nan)
         self._overlap = np.full((n, cameras), np.nan)
+        self._by_mask = np.zeros((n, cameras), dtype=bool)
         self._support = np.full((n, limbs), np.nan)
         self._lost = np.zeros((n, limbs), dtype=bool)
         self._entered = np.zeros(n, dtype=bool)
+        self._absent = np.zeros(n, dtype=bool)
         names = body.chain.limb_names
         self._own = [names.index(name) for name in body.house_limbs]
 
@@ -41,10 +48,14 @@ class Account:
         return int(self._entered.sum())
 
     def enter(self, frame: Frame, found: Found, seconds: float) -> None:
-        """Take down one frame; one in which no camera saw anything stays empty."""
+        """Take down one frame; one in which no camera saw anything, or nobody, stays empty."""
         self._entered[frame.index] = True
         self.seconds["tracking"] = self.seconds.get("tracking", 0.0) + seconds
         if not self.fitter.open_eyes:
+            return
+        if found.absent:
+            self._absent[frame.index] = True
+            self._lost[frame.index] = True
             return
         body, i = self.fitter.body, frame.index
         at = posed(body.chain, found.pose)
@@ -66,6 +77,7 @@ class Account:
             person: NDArray[np.bool_]
             if given is not None:
                 person = eye.canvas.view.image(given) > 127
+                self._by_mask[frame.index, i] = True
             else:
                 model, person = eye.evidence.person(model)
             union = float((model | person).sum())
@@ -75,17 +87,32 @@ class Account:
     def warnings(self) -> tuple[str, ...]:
         """Return what a person should know, a sentence each."""
         said = []
-        empty = int((self._entered & np.isnan(self._parameters).any(axis=1)).sum())
-        if empty:
-            said.append(f"in {empty} of {len(self._entered)} frames no camera has an image")
-        share = self._lost.mean(axis=0)
-        for name, lost in zip(self.fitter.body.house_limbs, share, strict=True):
-            if lost > 0.02:
-                said.append(f"{name} is held lost in {lost:.0%} of the frames")
+        if self.n_entered < self.scene.n_frames:
+            said.append(
+                f"tracking was interrupted after {self.n_entered} of {self.scene.n_frames} frames; "
+                "the others have no pose"
+            )
+        solved = np.isfinite(self._parameters).all(axis=1)
+        blind = self._entered & ~solved & ~self._absent
+        if blind.any():
+            said.append(f"no camera has an image in {self._called(blind)}: no pose there")
+        if self._absent.any():
+            said.append(f"nobody is seen in {self._called(self._absent)}: no pose there")
+        shares = self._lost[solved].mean(axis=0)
+        lost = [
+            f"{name} {share:.0%}"
+            for name, share in zip(self.fitter.body.house_limbs, shares, strict=True)
+            if share > _OFTEN
+        ]
+        if lost:
+            said.append(f"limbs held lost, and in how many of the frames: {', '.join(lost)}")
         return tuple(said)
 
-    def tracked(self, history: History) -> TrackedMotion:
-        """Return all of it."""
+    def _called(self, frames: Mask) -> str:
+        return frame_spans(np.flatnonzero(frames).tolist(), self.scene.first_frame + 1)
+
+    def tracked(self, history: History, surface: Surface | None = None) -> TrackedMotion:
+        """Return all of it, with the surface that the body was made of."""
         body = self.fitter.body
         house = {name: i for i, name in enumerate(body.house_limbs)}
         parents = []
@@ -101,7 +128,7 @@ class Account:
             parameters=self._parameters,
             limb_names=body.house_limbs,
             limb_parents=tuple(parents),
-            joint_names=tuple(_joint_name(name) for name in body.house_limbs[1:]),
+            joint_names=tuple(joint_above(name) for name in body.house_limbs[1:]),
             rotations=self._rotations,
             origins=self._origins,
             ends=(body.ends - body.chain.centres)[self._own],
@@ -111,23 +138,7 @@ class Account:
             rate=self.scene.rate,
             seconds=dict(self.seconds),
             history=history,
+            surface=surface,
+            by_mask=self._by_mask,
+            n_reached=self.n_entered if self.n_entered < self.scene.n_frames else None,
         )
-
-
-_JOINTS = {
-    "trunk": "lumbar",
-    "head": "neck",
-    "upper_arm": "shoulder",
-    "forearm": "elbow",
-    "hand": "wrist",
-    "thigh": "hip",
-    "shank": "knee",
-    "foot": "ankle",
-}
-
-
-def _joint_name(limb: str) -> str:
-    for side in ("left_", "right_"):
-        if limb.startswith(side):
-            return side + _JOINTS.get(limb.removeprefix(side), limb.removeprefix(side))
-    return _JOINTS.get(limb, limb)

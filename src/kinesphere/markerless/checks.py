@@ -4,6 +4,7 @@ import numpy as np
 
 from kinesphere import __version__
 from kinesphere.data import Frame, Mask, Scene, Step
+from kinesphere.markerless.alignment import moved_cameras
 from kinesphere.markerless.consistency import (
     Sight,
     disagreement,
@@ -11,17 +12,30 @@ from kinesphere.markerless.consistency import (
     find_lateness,
     sights,
 )
+from kinesphere.markerless.mixups import find_swap, person_size
 from kinesphere.markerless.silhouettes import largest_piece, plate_difference
 
 AGREE = 0.008
 """Of the image's diagonal: cameras whose silhouettes contradict each other by more are badly
 calibrated. A camera turned by half a degree gives 0.006, perfect ones 0.001, a good calibration of
 real footage 0.005."""
+CHECKS = "scene checks"
+"""What the step is called."""
+CULPRIT = "wrong_camera"
+"""Where the step names the camera that does not fit the others."""
 _MENDS = 0.4
 """Share of the disagreement that a shift in time must mend to be believed."""
+_UNDONE = 0.6
+"""The same of an exchange of two cameras: 0.9 where two were exchanged, 0.0 where none was."""
+_SIZES = (0.7, 3.2)
+"""m; a child and a tall person with arms stretched out and the legs apart lie between."""
+_SPECK = 1e-3
+"""Share of the image below which what differs from the plate is nobody."""
 _FRAMES = 9
 _WINDOW = 18
 _MOST = 5
+_LEAST = 3
+"""Frames by which a camera must be able to be late before it is asked."""
 
 
 def check_scene(scene: Scene) -> Step:
@@ -30,7 +44,6 @@ def check_scene(scene: Scene) -> Step:
     Needs masks or plates in two cameras at least; without them the step says that nothing was
     checked before tracking. Never stops: a bad mask may look like a bad calibration.
     """
-    first = scene.start.frame
     spread = np.linspace(0, scene.n_frames - 1, _FRAMES).astype(int)
     able = sum(p is not None for p in scene.plates) if not scene.has_masks else len(scene.cameras)
     if able < 2:
@@ -41,6 +54,8 @@ def check_scene(scene: Scene) -> Step:
         )
     every = max(1, int(spread[1] - spread[0])) if scene.n_frames > 1 else 1
     some = [silhouettes(scene, frame) for frame in scene.frames(0, None, every)]
+    if scene.start.frame % every:  # where masks are few, the start has one
+        some.append(silhouettes(scene, scene.frame(scene.start.frame)))
     seen = sights(scene.cameras, some)
     apart = disagreement(seen)
     diagonal = float(np.mean([np.hypot(c.width, c.height) for c in scene.cameras]))
@@ -57,22 +72,31 @@ def check_scene(scene: Scene) -> Step:
         for c, camera in enumerate(scene.cameras)
         if all(row[c] is None for row in seen)
     ]
-    if scene.n_frames > 2 * _MOST:
-        begin = min(first, max(0, scene.n_frames - _WINDOW))
-        window = [silhouettes(scene, f) for f in scene.frames(begin, begin + _WINDOW)]
-        late = find_lateness(sights(scene.cameras, window), min(_MOST, (len(window) - 1) // 2))
-        if late.frames != 0 and late.mended > _MENDS:
-            name, n = scene.cameras[late.camera].name, abs(late.frames)
-            later = "later" if late.frames > 0 else "earlier"
-            found |= {"late_camera": name, "late_frames": late.frames, "mended": late.mended}
-            offset = scene.offsets[late.camera]
-            warnings.append(
-                f"{name} seems to show everything {n} {'frame' if n == 1 else 'frames'} {later} "
-                f"than the other cameras ({late.mended:.0%} of their disagreement would go); try "
-                f"offset = {offset + late.frames} in its [[camera]]"
-            )
+    found["person_m"] = size = round(person_size(scene.cameras, some), 2)
+    if not _SIZES[0] <= size <= _SIZES[1]:
+        warnings.append(
+            f"the person seems {size:.2g} m large; the calibration's unit is wrong, or what moves "
+            "is no person"
+        )
+    swap = find_swap(scene.cameras, some)
+    if swap is not None and swap.mended > _UNDONE:
+        one, other = scene.cameras[swap.first].name, scene.cameras[swap.second].name
+        found |= {"swapped": [one, other], "mended": round(swap.mended, 2)}
+        warnings.append(
+            f"the images of {one} and {other} seem to be exchanged: the other way round "
+            f"{swap.mended:.0%} of the cameras' disagreement would go"
+        )
+        return _step(found, *warnings)  # whatever else seems wrong comes of it
+    told, warning = _lateness(scene)
+    found |= told
+    warnings += warning
     if apart > AGREE * diagonal:
-        warnings.append(_culprit(scene, seen, apart))
+        wrong = find_culprit(seen)
+        warnings.append(_contradiction(scene, wrong, apart))
+        if wrong is not None:
+            found[CULPRIT] = scene.cameras[wrong].name
+    if apart > AGREE / 2 * diagonal:
+        warnings += moved_cameras(scene.cameras, some[:: max(1, len(some) - 1)])
     return _step(found, *warnings)
 
 
@@ -83,15 +107,59 @@ def silhouettes(scene: Scene, frame: Frame) -> tuple[Mask | None, ...]:
         if mask is not None:
             found.append(np.asarray(largest_piece(mask.astype(np.uint8) * 255) > 0))
         elif image is not None and plate is not None:
-            found.append(np.asarray(plate_difference(image, plate) > 0))
+            differs = np.asarray(plate_difference(image, plate) > 0)
+            found.append(differs if differs.mean() > _SPECK else None)
         else:
             found.append(None)
     return tuple(found)
 
 
-def _culprit(scene: Scene, seen: list[list[Sight | None]], apart: float) -> str:
+def _lateness(scene: Scene) -> tuple[dict[str, object], list[str]]:
+    """Return what is found and said of a camera whose clock seems off; nothing where none is."""
+    begin = min(scene.start.frame, max(0, scene.n_frames - _WINDOW))
+    window = [silhouettes(scene, f) for f in scene.frames(begin, begin + _WINDOW)]
+    seen = _while_all_see(sights(scene.cameras, window))
+    if (most := min(_MOST, (len(seen) - 1) // 2)) < _LEAST:
+        return {}, []
+    late = [late for late in find_lateness(seen, most) if late.mended > _MENDS]
+    if not late:
+        return {}, []
+    names = [scene.cameras[each.camera].name for each in late]
+    told: dict[str, object] = {
+        "late_camera": names[0],
+        "late_frames": late[0].frames,
+        "mended": late[0].mended,
+    }
+    shifts = " or ".join(
+        f"{name} {abs(each.frames)} {'frame' if abs(each.frames) == 1 else 'frames'} "
+        f"{'later' if each.frames > 0 else 'earlier'}"
+        for name, each in zip(names, late, strict=True)
+    )
+    offsets = " or ".join(
+        f"offset = {scene.offsets[each.camera] + each.frames} in the [[camera]] of {name}"
+        for name, each in zip(names, late, strict=True)
+    )
+    return told, [
+        f"one camera seems to be out of time, showing everything {shifts} than the others "
+        f"({late[0].mended:.0%} of their disagreement would go): try {offsets}"
+    ]
+
+
+def _while_all_see(seen: list[list[Sight | None]]) -> list[list[Sight | None]]:
+    """Return the longest run of frames in which every camera that ever sees somebody does."""
+    able = [any(row[c] is not None for row in seen) for c in range(len(seen[0]))]
+    best: list[list[Sight | None]] = []
+    run: list[list[Sight | None]] = []
+    for row in seen:
+        whole = all(sight is not None for sight, sees in zip(row, able, strict=True) if sees)
+        run = [*run, row] if whole else []
+        best = max(best, run, key=len)
+    return best
+
+
+def _contradiction(scene: Scene, wrong: int | None, apart: float) -> str:
     head = f"the cameras' silhouettes contradict each other by {apart:.0f} px: "
-    if (wrong := find_culprit(seen)) is not None:
+    if wrong is not None:
         return (
             head + f"{scene.cameras[wrong].name} does not fit the others; its calibration, its "
             "offset or the way its images were cropped is wrong"
@@ -102,4 +170,4 @@ def _culprit(scene: Scene, seen: list[list[Sight | None]], apart: float) -> str:
 
 
 def _step(findings: dict[str, object], *warnings: str) -> Step:
-    return Step("scene checks", findings=findings, warnings=warnings, version=__version__)  # type: ignore[arg-type]
+    return Step(CHECKS, findings=findings, warnings=warnings, version=__version__)  # type: ignore[arg-type]

@@ -28,6 +28,8 @@ _FAR = 8.0
 """px; farther off is not worse, for a comparison of shifts."""
 _CLEARLY = 0.5
 """Without the camera that is wrong, the others contradict each other by so much less."""
+_AS_GOOD = 0.1
+"""Shares of the disagreement that differ by less are no choice between two cameras."""
 _SHARE = 0.9
 """Quantile over lines: a hand that one mask lacks must not speak for a camera."""
 
@@ -47,7 +49,7 @@ def sights(
     cameras: Sequence[Camera], frames: Sequence[tuple[Mask | None, ...]]
 ) -> list[list[Sight | None]]:
     """Return, for each frame, what each camera knows; None where it has no silhouette."""
-    middle = _middle(cameras, frames)
+    middle = middle_of(cameras, frames)
     found: list[list[Sight | None]] = []
     for masks in frames:
         row: list[Sight | None] = []
@@ -122,7 +124,7 @@ def find_culprit(seen: Sequence[Sequence[Sight | None]]) -> int | None:
     n = len(seen[0])
     if n < 3:
         return None  # of two, either may be wrong
-    left = np.array([_cost(distances(seen, without=c)) for c in range(n)])
+    left = np.array([cost(distances(seen, without=c)) for c in range(n)])
     order = np.argsort(left)
     best, second = left[order[0]], left[order[1]]
     return int(order[0]) if best < _CLEARLY * second else None
@@ -130,7 +132,7 @@ def find_culprit(seen: Sequence[Sequence[Sight | None]]) -> int | None:
 
 @dataclass(frozen=True)
 class Lateness:
-    """The camera that, shown so many frames later, agrees best with the others."""
+    """A camera that, shown so many frames later, agrees better with the others."""
 
     camera: int
     frames: int
@@ -139,8 +141,11 @@ class Lateness:
     """The share of the cameras' disagreement that taking it so mends."""
 
 
-def find_lateness(seen: Sequence[Sequence[Sight | None]], most: int) -> Lateness:
-    """Return which camera's time seems off, and by how much.
+def find_lateness(seen: Sequence[Sequence[Sight | None]], most: int) -> list[Lateness]:
+    """Return the cameras whose time may be off, and by how much; the likeliest first.
+
+    Several where silhouettes cannot tell: of two opposite cameras, one that comes earlier is as
+    good as the other that comes later.
 
     Parameters
     ----------
@@ -149,19 +154,21 @@ def find_lateness(seen: Sequence[Sequence[Sight | None]], most: int) -> Lateness
     most
         Largest lateness looked for, in frames.
     """
-    unmoved = _cost(distances(seen, margin=most))
-    best = Lateness(0, 0, 0.0)
+    unmoved = cost(distances(seen, margin=most))
     if not unmoved > 0:
-        return best
+        return []
+    found = []
     for camera in range(len(seen[0])):
-        for shift in sorted(range(-most, most + 1), key=abs):
-            cost = _cost(distances(seen, late=(camera, shift), margin=most))
-            if cost < unmoved * (1 - best.mended):
-                best = Lateness(camera, shift, 1 - cost / unmoved)
-    return best
+        shifts = sorted((s for s in range(-most, most + 1) if s), key=abs)
+        costs = [cost(distances(seen, late=(camera, s), margin=most)) for s in shifts]
+        best = int(np.argmin(costs))
+        if costs[best] < unmoved:
+            found.append(Lateness(camera, shifts[best], 1 - costs[best] / unmoved))
+    found.sort(key=lambda late: -late.mended)
+    return [late for late in found if late.mended > found[0].mended - _AS_GOOD]
 
 
-def _cost(far: Array) -> float:
+def cost(far: Array) -> float:
     """Return the mean distance, lines that are far off counted as `_FAR`."""
     return float(np.minimum(far, _FAR).mean()) if len(far) else float("nan")
 
@@ -198,7 +205,7 @@ def _rim(mask: Mask) -> Array:
     return np.stack([columns[chosen], rows[chosen]], axis=-1).astype(np.float64)
 
 
-def _middle(cameras: Sequence[Camera], frames: Sequence[tuple[Mask | None, ...]]) -> Array:
+def middle_of(cameras: Sequence[Camera], frames: Sequence[tuple[Mask | None, ...]]) -> Array:
     """Return the point nearest to the lines of sight through the silhouettes' centroids, (3,) m."""
     a, b = np.zeros((3, 3)), np.zeros(3)
     for masks in frames:

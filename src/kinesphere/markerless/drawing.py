@@ -21,6 +21,9 @@ _COLOURS = {
 _LOST = (255, 20, 20)
 _STRENGTH = 0.5
 """How much of a limb's colour covers the image."""
+_OPEN = 0.15
+"""The same for one that is lost, and for outlines."""
+_OUTLINE = 0.9
 
 
 def limb_colours(names: tuple[str, ...]) -> NDArray[np.uint8]:
@@ -67,25 +70,31 @@ def overlay(
     ids, _ = visible_faces(
         seen.project(vertices), seen.depths(vertices), faces, seen.width, seen.height
     )
-    inside = ids != NOTHING
-    limbs = np.where(inside, limb_of_face[np.maximum(ids, 0)], -1)
-    corners = vertices[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    towards = seen.centre - corners.mean(axis=1)
-    towards /= np.linalg.norm(towards, axis=1, keepdims=True)
-    facing = np.clip((normals * towards).sum(axis=1), 0, 1)
-    shade = (0.45 + 0.55 * facing)[np.maximum(ids, 0)]
+    body = np.nonzero(ids != NOTHING)  # the rest stays as it is, and is most of the picture
+    face = ids[body]
+    limbs = np.full(ids.shape, -1, dtype=np.int32)
+    limbs[body] = limb = limb_of_face[face]
     gone = np.zeros(len(names), dtype=bool) if lost is None else lost
     colours = limb_colours(names).astype(np.float64)
     colours[gone] = _LOST
-    paint = colours[limbs] * shade[..., None]
-    strength = np.where(inside, np.where(gone[limbs], 0.15, _STRENGTH), 0.0)[..., None]
-    edge = _edges(limbs)
-    paint = np.where(edge[..., None], colours[np.maximum(limbs, 0)], paint)
-    strength = np.where(edge[..., None], 0.9, strength)
-    mixed: Image = (picture * (1 - strength) + paint * strength).round().astype(np.uint8)
+    edge = _edges(limbs)[body]
+    shade = np.where(edge, 1.0, _shades(seen, vertices, faces)[face])
+    strength = np.where(edge, _OUTLINE, np.where(gone[limb], _OPEN, _STRENGTH))[:, None]
+    paint = colours[limb] * shade[:, None]
+    mixed = picture.copy()
+    mixed[body] = (picture[body] * (1 - strength) + paint * strength).round().astype(np.uint8)
     return mixed
+
+
+def _shades(camera: Camera, vertices: Array, faces: NDArray[np.int32]) -> Array:
+    """Return how bright a face is under a lamp at the camera, (n_faces,) up to 1."""
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    towards = camera.centre - corners.mean(axis=1)
+    towards /= np.linalg.norm(towards, axis=1, keepdims=True)
+    shades: Array = 0.45 + 0.55 * np.clip((normals * towards).sum(axis=1), 0, 1)
+    return shades
 
 
 def _edges(limbs: NDArray[np.int32]) -> Mask:

@@ -55,7 +55,7 @@ def visual_hull(
     cell = np.stack(np.meshgrid(offsets, offsets, offsets, indexing="ij"), -1).reshape(-1, 3)
     fine: Array = (coarse[:, None] + cell).reshape(-1, 3)
     fine = fine[_inside(fine, seen, 0.0)]
-    hull = _largest_piece(fine, side) if len(fine) else fine
+    hull = largest_piece_of_space(fine, side) if len(fine) else fine
     if len(hull) == 0 or min(_covered(hull, view, mask, side) for view, mask in seen) < _EXPLAINS:
         raise BadScene(
             "the silhouettes of the cameras have nothing in common; calibration, synchronisation "
@@ -64,7 +64,7 @@ def visual_hull(
     return hull
 
 
-def _largest_piece(points: Array, side: float) -> Array:
+def largest_piece_of_space(points: Array, side: float) -> Array:
     """Return the largest connected piece: corners that few cameras see are cut off by none."""
     index = np.rint((points - points.min(axis=0)) / side).astype(int)
     grid = np.zeros(index.max(axis=0) + 1, dtype=bool)

@@ -27,6 +27,9 @@ _ARMS = (
 """Where an upper arm points: ahead, up, outward."""
 _ELBOWS = ((15.0, (0.0,)), (85.0, (-60.0, 0.0, 60.0)))
 """Flexions in degrees, and the twists of the upper arm tried with each."""
+_TWISTS = (-80.0, -40.0, 0.0, 40.0, 80.0)
+_REACH = ((12.0, (0.0,)), (55.0, _TWISTS), (105.0, _TWISTS))
+"""The same where the whole reach of an arm is tried."""
 _LEGS = ((0.0, 0.0), (25.0, 10.0), (-20.0, 15.0), (50.0, 60.0), (85.0, 90.0))
 """Flexions of hip and knee in degrees."""
 
@@ -48,6 +51,42 @@ def arm_poses(chain: Chain, pose: Pose, side: str) -> Iterator[Pose]:
                 balls[limb] = least @ about
                 angles[elbow] = np.radians(flexion) - elbow_at
                 yield limited(chain, replace(pose, balls=balls, angles=angles))
+
+
+def arm_places(chain: Chain, pose: Pose, side: str, directions: int = 180) -> Iterator[Pose]:
+    """Yield the pose with one arm in all the places it can reach, about evenly spread.
+
+    Parameters
+    ----------
+    directions
+        Over the whole sphere; those an upper arm can point in are tried straight, one in three bent
+        as well: a straight arm reaches far, and must be met more exactly.
+    """
+    names = chain.limb_names
+    limb = names.index(f"{side}_upper_arm")
+    link = chain.links[limb]
+    elbow, elbow_at = _hinge(chain, f"{side}_forearm")
+    bare = pose.angles.copy()
+    bare[np.isin(chain.dof_limbs, [names.index(f"{side}_{b}") for b in ("forearm", "hand")])] = 0.0
+    for i, towards in enumerate(_sphere(directions)):
+        if towards @ link.towards < np.cos(link.swing):
+            continue
+        least = rotation_between(link.long_axis, towards)
+        for flexion, twists in _REACH if i % 3 == 0 else _REACH[:1]:
+            for twist in twists:
+                balls, angles = pose.balls.copy(), bare.copy()
+                balls[limb] = least @ rotation_about(link.long_axis, np.asarray(np.radians(twist)))
+                angles[elbow] = np.radians(flexion) - elbow_at
+                yield replace(pose, balls=balls, angles=angles)
+
+
+def _sphere(n: int) -> Array:
+    """Return unit vectors spread evenly (a Fibonacci spiral), (n, 3)."""
+    i = np.arange(n) + 0.5
+    turn = np.pi * (1 + np.sqrt(5)) * i
+    z = 1 - 2 * i / n
+    across = np.sqrt(1 - z**2)
+    return np.stack([across * np.cos(turn), across * np.sin(turn), z], axis=1)
 
 
 def leg_poses(chain: Chain, pose: Pose, side: str) -> Iterator[Pose]:

@@ -1,5 +1,6 @@
 """A pose of a chain: balls as matrices, hinges as angles; steps, differences, limits."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -93,10 +94,11 @@ def difference(chain: Chain, start: Pose, end: Pose) -> Array:
     return step
 
 
-def limited(chain: Chain, pose: Pose) -> Pose:
-    """Return the nearest pose within the joints' limits."""
+def limited(chain: Chain, pose: Pose, limbs: Sequence[int] | None = None) -> Pose:
+    """Return the nearest pose within the joints' limits; balls only of some limbs, if named."""
     balls = pose.balls.copy()
-    for i, link in enumerate(chain.links):
+    for i in range(len(chain.links)) if limbs is None else limbs:
+        link = chain.links[i]
         if link.kind == "ball" and (link.swing < np.pi or link.twist < np.pi):
             balls[i] = _limited_ball(balls[i], link.long_axis, link.towards, link.swing, link.twist)
     return replace(pose, balls=balls, angles=np.clip(pose.angles, *chain.limits))

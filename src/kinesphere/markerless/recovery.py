@@ -54,7 +54,7 @@ def recovered(fitter: Fitter, pose: Pose, names: list[str], refined: int = _REFI
     """Return a pose that explains clearly more, with arms or legs elsewhere; None if there is none.
 
     Every hypothesis is drawn and scored; the best ``refined`` have their joints tried one by one,
-    are fitted and scored again.
+    are fitted and scored again; of a pose before and after its fit the better one counts.
     """
     best, best_score = pose, float(fitter.score(pose)[0].sum())
     needed = best_score + (_MARGIN - 1) * abs(best_score)
@@ -66,10 +66,11 @@ def recovered(fitter: Fitter, pose: Pose, names: list[str], refined: int = _REFI
         for start in tried[:refined]:
             near = _climbed(fitter, start, name)
             priors = (expectation(chain, near, settings, widen=3.0), rest(chain, settings, near))
-            found = fitter.fit(near, priors)
-            score = float(fitter.score(found)[0].sum())
-            if score > max(needed, best_score):
-                best, best_score = found, score
+            # a fit may slide off what was met: the better of the two counts
+            for found in (fitter.fit(near, priors), near):
+                score = float(fitter.score(found)[0].sum())
+                if score > max(needed, best_score):
+                    best, best_score = found, score
     return None if best is pose else best
 
 

@@ -19,6 +19,7 @@ from kinesphere.data import (
 )
 from kinesphere.errors import DegenerateMotion
 from kinesphere.geometry.range_of_motion import range_of_motion
+from kinesphere.markerless.checks import CHECKS, CULPRIT
 from kinesphere.markerless.tracked import TrackedMotion
 
 _EMPTY = np.empty((0, 3))
@@ -82,6 +83,8 @@ def tracking_step(tracked: TrackedMotion, cameras: tuple[str, ...]) -> Step:
     """Return what people should know of a tracked motion: overlap, support, and what was lost."""
     support = _medians(tracked.support)
     lost = tracked.lost.sum(axis=0)
+    reached = tracked.n_frames if tracked.n_reached is None else tracked.n_reached
+    named = any(CULPRIT in step.findings for step in tracked.history if step.name == CHECKS)
     return Step(
         "tracking result",
         findings={
@@ -95,12 +98,13 @@ def tracking_step(tracked: TrackedMotion, cameras: tuple[str, ...]) -> Step:
             "frames_lost_of_limb": dict(
                 zip(tracked.limb_names, (int(n) for n in lost), strict=True)
             ),
-            "frames_per_s": tracked.n_frames / total
+            "frames_per_s": reached / total
             if (total := sum(v for k, v in tracked.seconds.items() if k != "decoding")) > 0
             else None,
             "seconds_of_module": dict(tracked.seconds),
         },
-        warnings=_odd_cameras(tracked.overlap, cameras),
+        # one wrong camera drags the body out of all; silhouettes alone know better which it is
+        warnings=() if named else _odd_cameras(tracked.overlap, cameras),
         version=__version__,
     )
 

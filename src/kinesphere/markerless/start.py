@@ -1,7 +1,7 @@
 """The first pose, from silhouettes alone: where, how large, which way, arms and legs."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,22 +12,38 @@ from kinesphere.markerless.body import Body
 from kinesphere.markerless.eyes import with_body
 from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.hull import visual_hull
-from kinesphere.markerless.hypotheses import arm_poses, facing, leg_poses, standing
+from kinesphere.markerless.hypotheses import facing, leg_poses, standing
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.pose import Pose, posed
 from kinesphere.markerless.prediction import rest
-from kinesphere.markerless.recovery import recovered
+from kinesphere.markerless.search import shaken, with_arms_found
 from kinesphere.markerless.shape import FACTORS, shaped
 from kinesphere.markerless.shape_fit import Instant, fit_shape
+from kinesphere.markerless.sketch import Sketch, sketch_of
 from kinesphere.markerless.stance import Stance, stances_of
 
-_KEPT = 5
-"""Coarse starts that are fitted closely."""
+_COARSE, _WHOLE, _LAST = 8, 4, 2
+"""Candidates whose legs are searched; then their arms; then fitted closely."""
 _APART = 0.7
 """Cosine between two headings above which they count as one."""
-_SHAPE = (((8, 2), (4, 3)), ((4, 2), (2, 3), (1, 3)))
-_COARSE = ((8, 6), (4, 3))
-_FINER = ((8, 3), (4, 4), (2, 3))
+_LARGE, _SMALL = (0.25, 0.15), (0.12, 0.06)
+"""rad by which joints are shaken: of a coarse start, of one that is about right."""
+_TRIES = 16
+_LOWER = ("pelvis", "trunk", *(f"{s}_{b}" for s in ("left", "right") for b in ("thigh", "shank")))
+_SHAPE = (((8, 2), (4, 3)), ((4, 2), (2, 3)), ((2, 3), (1, 3)))
+_TIGHT = 3.0
+"""How much more tightly the proportions are held than by many instants."""
+_FINER = ((4, 2), (2, 4), (1, 3))
+
+
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """A candidate, and how much it explains in nats."""
+
+    worth: float
+    pose: Pose
+    logs: Array
+    sketch: Sketch
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,10 +80,11 @@ def find_start(
     arms: str = "standing",
     fit: bool = True,
 ) -> Start:
-    """Find a person who is about upright, by silhouettes of one instant.
+    """Find a person who stands or lies, by silhouettes of one instant.
 
-    Many coarse starts (headings × sizes × legs) are fitted and the best few kept; of these the
-    arms are tried in many places; the best has its proportions fitted.
+    Many coarse starts (headings × sizes × legs) are held against small silhouettes; the best few
+    are searched in the large, legs first, then arms wherever they can be, then all joints. The
+    last two have their proportions fitted, and the one that explains more wins.
 
     Parameters
     ----------
@@ -89,38 +106,31 @@ def find_start(
     hull = visual_hull(views, masks)
     for eye, mask in zip(fitter.eyes, masks, strict=True):
         eye.evidence.look(mask)
-    stances = stances_of(hull, fitter.body, position, heading, sizes=fit)
-    tried: list[tuple[float, Pose, Array]] = []
-    for stance in stances:
+    sketch = sketch_of(fitter.body, views, masks)
+    coarse: list[_Tried] = []
+    for stance in stances_of(hull, fitter.body, position, heading, sizes=fit):
         logs = np.zeros(len(FACTORS))
         logs[0] = stance.log_size
-        sized = with_body(fitter, model(shaped(surface, logs)))
-        upright = standing(sized.body.chain, arms)
-        for pose in _coarse_starts(sized, upright, stance):
-            found = sized.fit(pose, (rest(sized.body.chain, sized.settings, pose),), _COARSE)
-            tried.append((_mean(overlaps(sized, found, masks)), found, logs))
-    tried.sort(key=lambda one: -one[0])
-    finer = []
-    for _, pose, logs in _unlike(tried, _KEPT):
-        sized = with_body(fitter, model(shaped(surface, logs)))
-        pose = with_best_arms(sized, pose)
-        pose = sized.fit(pose, (rest(sized.body.chain, sized.settings, pose),), _FINER)
-        better = recovered(sized, pose, ["left arm", "right arm"])
-        pose = pose if better is None else better
-        finer.append((_mean(overlaps(sized, pose, masks)), pose, logs))
-    finer.sort(key=lambda one: -one[0])
-    best = _with_shape(fitter, surface, model, masks, finer[:2]) if fit else finer[0]
-    _, pose, logs = best
-    sized = with_body(fitter, model(shaped(surface, logs)))
-    return Start(pose, logs, overlaps(sized, pose, masks))
+        sized = sketch.with_body(model(shaped(surface, logs)))
+        coarse += _coarse_starts(sized, stance, logs, arms)
+    with_legs = [_searched(one, _with_legs) for one in _unlike(_best(coarse), _COARSE)]
+    whole = [_searched(one, _with_arms) for one in _best(with_legs)[:_WHOLE]]
+    last = [_closely(fitter, surface, model, masks, one, fit=fit) for one in _best(whole)[:_LAST]]
+    best = _best(last)[0]
+    whole_body = with_body(fitter, model(shaped(surface, best.logs)))
+    return Start(best.pose, best.logs, overlaps(whole_body, best.pose, masks))
 
 
-def _unlike(tried: Sequence[tuple[float, Pose, Array]], n: int) -> list[tuple[float, Pose, Array]]:
+def _best(tried: Iterable[_Tried]) -> list[_Tried]:
+    return sorted(tried, key=lambda one: -one.worth)
+
+
+def _unlike(tried: Sequence[_Tried], n: int) -> list[_Tried]:
     """Return the best few of sorted candidates: of each heading the best, then the rest."""
     first: list[int] = []
-    for i, (_, pose, _) in enumerate(tried):
-        ahead = pose.balls[0][:, 0]
-        if all(ahead @ tried[j][1].balls[0][:, 0] < _APART for j in first):
+    for i, one in enumerate(tried):
+        ahead = one.pose.balls[0][:, 0]
+        if all(ahead @ tried[j].pose.balls[0][:, 0] < _APART for j in first):
             first.append(i)
     rest_of = [i for i in range(len(tried)) if i not in first]
     # one in three places is kept for second bests: of one heading, the other size or legs
@@ -129,62 +139,65 @@ def _unlike(tried: Sequence[tuple[float, Pose, Array]], n: int) -> list[tuple[fl
     return [tried[i] for i in sorted((chosen + first[n - spare :] + rest_of[spare:])[:n])]
 
 
-def with_best_arms(fitter: Fitter, pose: Pose) -> Pose:
-    """Return the pose with each arm where it explains most, one after the other."""
-    for side in ("left", "right", "left"):
-        if f"{side}_upper_arm" in fitter.body.chain.limb_names:
-            choices = [pose, *arm_poses(fitter.body.chain, pose, side)]
-            pose = max(choices, key=lambda p: float(fitter.score(p)[0].sum()))
-    return pose
-
-
-def _coarse_starts(fitter: Fitter, upright: Pose, stance: Stance) -> list[Pose]:
-    """Return, for each heading, the leg phase that explains most."""
-    chain = fitter.body.chain
+def _coarse_starts(sketch: Sketch, stance: Stance, logs: Array, arms: str) -> list[_Tried]:
+    """Return, for each heading, the two leg phases that explain most."""
+    chain = sketch.body.chain
+    upright = standing(chain, arms)
     legs = [upright]
-    if "left_shank" in chain.limb_names:
-        for left, right in ((1, 2), (2, 1), (3, 0), (0, 3)):
-            pose = list(leg_poses(chain, upright, "left"))[left]
-            legs.append(list(leg_poses(chain, pose, "right"))[right])
-    starts = []
+    for left, right in ((1, 2), (2, 1), (3, 0), (0, 3)):
+        pose = list(leg_poses(chain, upright, "left"))[left]
+        legs.append(list(leg_poses(chain, pose, "right"))[right])
+    starts: list[_Tried] = []
     for looks in stance.headings:
         turned = [facing(pose, stance.place, looks, stance.up) for pose in legs]
-        starts.append(max(turned, key=lambda p: float(fitter.score(p)[0].sum())))
+        tried = [_Tried(sketch.worth(pose), pose, logs, sketch) for pose in turned]
+        starts += _best(tried)[:2]
     return starts
 
 
-def _with_shape(
+def _searched(one: _Tried, search: Callable[[Sketch, Pose], Pose]) -> _Tried:
+    pose = search(one.sketch, one.pose)
+    return replace(one, pose=pose, worth=one.sketch.worth(pose))
+
+
+def _with_legs(sketch: Sketch, pose: Pose) -> Pose:
+    pose = with_arms_found(sketch, pose, roughly=True)
+    return shaken(sketch, pose, _LARGE, _TRIES, _LOWER)
+
+
+def _with_arms(sketch: Sketch, pose: Pose) -> Pose:
+    return shaken(sketch, with_arms_found(sketch, pose), _SMALL, _TRIES)
+
+
+def _closely(
     fitter: Fitter,
     surface: Surface,
     model: Callable[[Surface], Body],
     masks: Sequence[NDArray[np.uint8] | None],
-    candidates: Sequence[tuple[float, Pose, Array]],
-) -> tuple[float, Pose, Array]:
-    """Return the best candidate after its proportions have been fitted to the one instant."""
-    pictures = tuple(masks)
-    done = []
-    for _, start, start_logs in candidates:
-        pose, logs = start, start_logs
-        for schedule in _SHAPE:
-            logs, poses = fit_shape(
-                fitter,
-                surface,
-                model,
-                logs,
-                [Instant(pictures, pose)],
-                schedule=schedule,
-                tight=3.0,
-            )
-            pose = poses[0]
-            sized = with_body(fitter, model(shaped(surface, logs)))
-            for eye, picture in zip(sized.eyes, pictures, strict=True):
-                eye.evidence.look(picture)
-            pose = sized.fit(pose, (rest(sized.body.chain, sized.settings, pose),), _FINER)
-            better = recovered(sized, pose, ["left arm", "right arm"], refined=5)
-            pose = pose if better is None else better
-        done.append((_mean(overlaps(sized, pose, masks)), pose, logs))
-    return max(done, key=lambda one: one[0])
+    one: _Tried,
+    *,
+    fit: bool,
+) -> _Tried:
+    """Return a candidate fitted at full size, and with its proportions if they may change."""
+    logs, sketch = one.logs, one.sketch
+    body = model(shaped(surface, logs))
+    pose = _refined(fitter, body, one.pose)
+    for schedule in _SHAPE if fit else ():
+        instant = Instant(tuple(masks), pose)
+        logs, poses = fit_shape(
+            fitter, surface, model, logs, [instant], schedule=schedule, tight=_TIGHT
+        )
+        body = model(shaped(surface, logs))
+        sketch = sketch.with_body(body)
+        pose = _refined(fitter, body, shaken(sketch, poses[0], _SMALL, _TRIES))
+    # where the rest is right to a pixel, arms stand out: once more, wherever they can be
+    pose = _refined(fitter, body, _with_arms(sketch, pose))
+    return _Tried(sketch.worth(pose), pose, logs, sketch)
 
 
-def _mean(values: Array) -> float:
-    return float(np.nanmean(values)) if np.isfinite(values).any() else 0.0
+def _refined(fitter: Fitter, body: Body, pose: Pose) -> Pose:
+    """Return the pose fitted to the rims, unless it explains less then."""
+    sized = with_body(fitter, body)
+    found = sized.fit(pose, (rest(sized.body.chain, sized.settings, pose),), _FINER)
+    before, after = (float(sized.score(p)[0].sum()) for p in (pose, found))
+    return found if after >= before else pose

@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array, History, Mask
+from kinesphere.data import Array, History, Mask, Surface
 
 
 class PosedBody(Protocol):
@@ -60,11 +60,24 @@ class TrackedMotion:
     seconds: dict[str, float] = field(default_factory=dict)
     """Module (decoding, segmentation, rasterizing, …) → time spent."""
     history: History = ()
+    surface: Surface | None = None
+    """The body in the bind pose, fitted to the person."""
+    by_mask: Mask | None = None
+    """(n_frames, n_cameras) where a given mask was what ``overlap`` compares with; elsewhere it is
+    what colours tell. None where nobody kept account."""
+    n_reached: int | None = None
+    """How many frames were looked at before tracking was interrupted; None where all were."""
 
     @property
     def n_frames(self) -> int:
         """Number of frames."""
         return len(self.parameters)
+
+    @property
+    def overlap_with_masks(self) -> Array:
+        """(n_frames, n_cameras) as ``overlap``, NaN where no mask was given."""
+        given = np.zeros(self.overlap.shape, dtype=bool) if self.by_mask is None else self.by_mask
+        return np.where(given, self.overlap, np.nan)
 
     @property
     def joint_centres(self) -> Array:

@@ -1,6 +1,7 @@
 """Cameras in, motion out: start, proportions, then frame after frame."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from time import perf_counter
 from typing import TypeAlias
 
@@ -60,7 +61,8 @@ def track(
     Returns
     -------
     TrackedMotion
-        One pose a frame; NaN where no camera has an image.
+        One pose a frame; NaN where no camera has an image, and in frames not reached when an
+        interruption (Ctrl-C) ended tracking.
 
     Raises
     ------
@@ -102,15 +104,19 @@ def track(
         seconds["proportions"] = perf_counter() - clock
     account = Account(scene, fitter, masks)
     account.seconds.update(seconds)
-    for frames in (scene.frames(first), backwards(scene, first)):
-        tracking = _tracking(fitter, pose, settings, masks)
-        for frame in frames:
-            clock = perf_counter()
-            pictures = pictures_of(frame, masks)
-            watch = tracking.begin if frame.index == first else tracking.step
-            found = watch(pictures)
-            account.enter(frame, found, perf_counter() - clock)
-            say("tracking", account.n_entered, scene.n_frames)
+    try:
+        for frames in (scene.frames(first), backwards(scene, first)):
+            tracking = _tracking(fitter, pose, settings, masks)
+            for frame in frames:
+                clock = perf_counter()
+                pictures = pictures_of(frame, masks)
+                watch = tracking.begin if frame.index == first else tracking.step
+                found = watch(pictures)
+                account.enter(frame, found, perf_counter() - clock)
+                say("tracking", account.n_entered, scene.n_frames)
+    except KeyboardInterrupt:
+        if not account.n_entered:
+            raise  # nothing to keep
     step = Step(
         "track",
         settings={"model": scene.body.model, "start": start.how, **settings_as_json(settings)},
@@ -120,7 +126,8 @@ def track(
         },
         warnings=account.warnings(),
     )
-    return account.tracked((*scene.history, step))
+    fitted = replace(shaped(surface, logs), shapes=())
+    return account.tracked((*scene.history, step), fitted)
 
 
 def _tracking(fitter: Fitter, pose: Pose, settings: TrackSettings, masks: bool) -> Tracking:

@@ -1,12 +1,13 @@
 """From frame to frame: predict, fit, judge each limb, bring lost ones back, learn the colours."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Mask
+from kinesphere.markerless.absence import nobody_seen
 from kinesphere.markerless.contour_fit import ContourFitter
 from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.pose import Pose, difference
@@ -33,6 +34,8 @@ class Found:
     """(n_limbs,) nats a pixel by which what the limb covers is likelier it than background."""
     lost: Mask
     """(n_limbs,) held lost."""
+    absent: bool = False
+    """Whether nobody is there: the pose is the last one in which somebody was."""
 
 
 @dataclass(eq=False)
@@ -70,8 +73,12 @@ class Tracking:
             return self._judged(self.last)
         priors = (expectation(chain, guess, settings), rest(chain, settings, guess))
         pose = (self.contours or self.fitter).fit(guess, priors)
-        self.before, self.last = self.last, pose
         found = self._judged(pose, learn=settings.learning)
+        if found.absent:
+            # where the person was seen last is where they are looked for until they come back
+            self.before = None
+            return replace(found, pose=self.last)
+        self.before, self.last = self.last, pose
         missed = found.lost | np.isnan(found.gain)  # nobody sees it: it may be elsewhere
         if settings.recover and (names := self.watch.due(chain, missed)):
             better = recovered(self.fitter, pose, names)
@@ -96,7 +103,8 @@ class Tracking:
         n = len(self.fitter.body.chain.links)
         told_for, told = np.zeros(n), np.zeros(n)
         scores, counts = np.zeros(n), np.zeros(n)
-        for eye, (parts, rim) in zip(self.fitter.open_eyes, self.fitter.look_at(pose), strict=True):
+        looks = list(zip(self.fitter.open_eyes, self.fitter.look_at(pose), strict=True))
+        for eye, (parts, rim) in looks:
             if learn >= 1:
                 eye.evidence.learn(rim, parts, learn)
             eye.evidence.score(parts, scores, counts)
@@ -105,9 +113,12 @@ class Tracking:
                 known = np.isfinite(agreement)
                 np.add.at(told_for, rim.parts[known, 0], agreement[known])
                 np.add.at(told, rim.parts[known, 0], 1)
-            if 0 < learn < 1:
-                eye.evidence.learn(rim, parts, learn)
         with np.errstate(invalid="ignore", divide="ignore"):
             support = np.where(told >= _LINES, told_for / told, np.nan)
             gain = np.where(counts >= _LINES, scores / counts, np.nan)
-        return Found(pose, support, gain, held_lost(support, gain, self.fitter.settings))
+        lost = held_lost(support, gain, self.fitter.settings)
+        absent = nobody_seen(support, gain, lost)
+        if 0 < learn < 1 and not absent:
+            for eye, (parts, rim) in looks:
+                eye.evidence.learn(rim, parts, learn)
+        return Found(pose, support, gain, lost, absent)

@@ -6,9 +6,15 @@ import numpy as np
 
 from kinesphere.data import Array, Mask
 from kinesphere.geometry.rotations import rotation_about
+from kinesphere.parameterization.branches import CALM, branches_of_movement
 from kinesphere.parameterization.kernels import smoothest_branches, two_axis_solutions
+from kinesphere.parameterization.samples import smooth_rotations
 from kinesphere.parameterization.settings import AngleSettings, TwistSettings
 from kinesphere.parameterization.twist import closed_twist, sampled_twist
+
+PATIENCE = 1.0  # rad per frame for a second, about what twists in the wrong half turn cost: a limb
+# spun about itself for less keeps its branch, one mistaken for longer finds back
+USUAL = 50.0  # Hz, where nobody says
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +41,7 @@ def solve_angles(
     twist_known: Mask,
     settings: AngleSettings,
     twist: TwistSettings,
+    rate: float = 0.0,
 ) -> JointAngles:
     """Return the angles that rebuild the poses of a joint.
 
@@ -51,15 +58,18 @@ def solve_angles(
         False where the orientation about the limb is arbitrary; its twist is then NaN.
     settings, twist
         How a branch is chosen, and how the twist is found.
+    rate
+        Hz; 0 where unknown. Tells how long a limb may be twisted into the other half turn before
+        its branch is doubted, and what is too fast for a limb and therefore noise.
     """
     if len(axes) == 1:
         solved = one_axis_angles(rotations, axes[0], rest, long_axis)
     elif len(axes) == 2:
         solved = two_axis_angles(
-            rotations, axes, rest, long_axis, twist_known, settings, deliberate=settings.unwrap
+            rotations, axes, rest, long_axis, twist_known, settings, settings.unwrap, rate
         )
     else:
-        return three_axis_angles(rotations, axes, rest, long_axis, twist_known, settings)
+        return three_axis_angles(rotations, axes, rest, long_axis, twist_known, settings, rate)
     twists = solved.twists
     if twist.method == "sampled":
         model = np.broadcast_to(rest, rotations.shape)
@@ -96,6 +106,7 @@ def two_axis_angles(
     twist_known: Mask,
     settings: AngleSettings,
     deliberate: bool = False,
+    rate: float = 0.0,
 ) -> JointAngles:
     """Return angles about two axes: two circles meet on the joint sphere in at most two points.
 
@@ -106,18 +117,15 @@ def two_axis_angles(
     counts is the branch rule's say; a ``deliberate`` twist is a movement like the others, whose
     size is no reason to change the branch.
     """
-    solutions, sines, excess = two_axis_solutions(
-        np.ascontiguousarray(rotations),
-        np.ascontiguousarray(axes[0]),
-        np.ascontiguousarray(axes[1]),
-        np.ascontiguousarray(rest),
-        np.ascontiguousarray(long_axis),
-    )
-    if settings.branch == "viterbi":
-        cost = settings.twist_cost
-        if deliberate:  # mean squares: they choose between whole paths and never buy a leap
-            cost /= 3 * max(1, int(np.isfinite(sines).sum()))
-        branch = smoothest_branches(solutions, twist_known, cost, deliberate)
+    given = axes[0].copy(), axes[1].copy(), np.ascontiguousarray(rest), long_axis.copy()
+    solutions, sines, excess = two_axis_solutions(np.ascontiguousarray(rotations), *given)
+    if settings.branch == "viterbi" and deliberate:
+        calm = np.ascontiguousarray(smooth_rotations(rotations, rate, CALM))
+        branch = branches_of_movement(solutions, two_axis_solutions(calm, *given)[0], twist_known)
+    elif settings.branch == "viterbi":
+        branch = smoothest_branches(
+            solutions, twist_known, settings.twist_cost, PATIENCE * (rate or USUAL)
+        )
     elif settings.branch == "smallest-twist":
         smaller = np.abs(solutions[:, 1, 2]) < np.abs(solutions[:, 0, 2])
         branch = (smaller & twist_known).astype(np.int8)
@@ -136,6 +144,7 @@ def three_axis_angles(
     long_axis: Array,
     twist_known: Mask,
     settings: AngleSettings,
+    rate: float = 0.0,
 ) -> JointAngles:
     """Return angles about three axes of any directions, which leave no twist over.
 
@@ -146,13 +155,15 @@ def three_axis_angles(
     if settings.branch == "smallest-twist":  # there is none
         settings = replace(settings, branch="viterbi")
     solved = two_axis_angles(
-        rotations @ rest.T, axes[1:], np.eye(3), axes[0], twist_known, settings, deliberate=True
+        rotations @ rest.T, axes[1:], np.eye(3), axes[0], twist_known, settings, True, rate
     )
     first, others = np.where(twist_known, solved.twists, np.nan), solved.angles[:, :2]
     twists = np.where(np.isnan(first), np.nan, 0.0)
     excess, sines = solved.excess, solved.sines
     if not twist_known.all():
-        limb = two_axis_angles(rotations, axes[1:], rest, long_axis, twist_known, settings)
+        limb = two_axis_angles(
+            rotations, axes[1:], rest, long_axis, twist_known, settings, rate=rate
+        )
         others = np.where(twist_known[:, None], others, limb.angles[:, :2])
         excess = np.where(twist_known, excess, limb.excess)
         sines = np.where(twist_known, sines, limb.sines)

@@ -19,11 +19,11 @@ from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.confidence import AxesQuality, observed_n_axes
 from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge
 from kinesphere.parameterization.movement_axes import movement_axes
+from kinesphere.parameterization.per_joint import parse_counts
 from kinesphere.parameterization.second_axis import cone_spread, second_axis
 from kinesphere.parameterization.settings import (
     AxesSettings,
     ParameterizationSettings,
-    parse_counts,
 )
 from kinesphere.parameterization.view import JointView
 from kinesphere.parameterization.zero import body_rest, movement_rest, reach_and_twist
@@ -171,6 +171,7 @@ def solve_joint(
         view.twist_known,
         options,
         settings.twist,
+        view.samples.rate,
     )
 
 

@@ -8,7 +8,9 @@ from kinesphere.kernels.jit import kernel
 
 Branches = NDArray[np.int8]
 
-MOST_CHANGE = 3.0  # rad, what a step may cost at most: a jump between branches is no reason more
+MOST_CHANGE = 3.0  # rad, what the changes of a step may cost at most
+APART = 4.0  # rad of the three angles: branches that differ by more do not meet in this step,
+# however noisy it is; past a singularity 3° of correlated noise keep them 3.3 apart
 
 
 @kernel
@@ -166,20 +168,21 @@ def twist_between(model: Array, actual: Array, long_axis: Array) -> float:
 
 @kernel
 def smoothest_branches(
-    solutions: Array, twist_known: Mask, twist_cost: float, whole: bool = False
+    solutions: Array, twist_known: Mask, twist_cost: float, leap: float
 ) -> Branches:
     """Return the branch of every frame on the cheapest path (Viterbi, two states).
 
-    A step costs the sum of the wrapped changes of θ1, θ2 and twist, at most 3 rad; a frame costs
-    its squared twist (the ``whole`` of its squared angles) times ``twist_cost``, or where no twist
-    is known a little for not lying on the rest position's side. Frames of NaN are stepped over.
+    A step costs the sum of the wrapped changes of θ1, θ2 and twist, at most 3 rad. Where keeping
+    to the branches and changing them are 4 rad apart on the mean, the limb is not at a
+    singularity, and the worse of the two costs ``leap`` more: noise while standing must not buy
+    it. A frame costs its squared twist times ``twist_cost``, or where no twist is known a little
+    for not lying on the rest position's side. Frames of NaN are stepped over.
 
     Parameters
     ----------
     solutions : (n, 2, 3) rad
     twist_known : (n,) bool
-    twist_cost
-    whole
+    twist_cost, leap
 
     Returns
     -------
@@ -192,27 +195,34 @@ def smoothest_branches(
     previous = np.full(n, -1, dtype=np.int64)
     cost = np.zeros(2)
     new = np.zeros(2)
+    change = np.zeros((2, 2))
     last = -1
     for f in range(n):
         if np.isnan(solutions[f, 0, 0]):
             continue
+        leap_to_same = leap_to_other = 0.0
+        if last >= 0:
+            parts = 3 if twist_known[f] and twist_known[last] else 2
+            for a in range(2):
+                for b in range(2):
+                    change[a, b] = 0.0
+                    for i in range(parts):
+                        d = abs(solutions[f, b, i] - solutions[last, a, i])
+                        change[a, b] += min(d, 2.0 * np.pi - d)
+            keeping_less = change[0, 1] + change[1, 0] - change[0, 0] - change[1, 1]
+            if keeping_less > 2.0 * APART * parts / 3.0:
+                leap_to_other = leap
+            elif -keeping_less > 2.0 * APART * parts / 3.0:
+                leap_to_same = leap
         for b in range(2):
-            own = 1e-3 * b
-            if twist_known[f]:
-                own = twist_cost * solutions[f, b, 2] ** 2
-                if whole:
-                    own += twist_cost * (solutions[f, b, 0] ** 2 + solutions[f, b, 1] ** 2)
+            own = twist_cost * solutions[f, b, 2] ** 2 if twist_known[f] else 1e-3 * b
             if last < 0:
                 new[b] = own
                 continue
             cheapest = np.inf
             for a in range(2):
-                change = 0.0
-                parts = 3 if twist_known[f] and twist_known[last] else 2
-                for i in range(parts):
-                    d = abs(solutions[f, b, i] - solutions[last, a, i])
-                    change += min(d, 2.0 * np.pi - d)
-                total = cost[a] + min(change, MOST_CHANGE)
+                total = cost[a] + min(change[a, b], MOST_CHANGE)
+                total += leap_to_same if a == b else leap_to_other
                 if total < cheapest:
                     cheapest = total
                     origin[f, b] = a

@@ -29,13 +29,12 @@ from kinesphere.parameterization.measures import (
     mid_point_residuals,
     paper_measures,
 )
+from kinesphere.parameterization.per_joint import parse_counts, parse_windows
 from kinesphere.parameterization.report import Told, result_findings, stage_warnings, told
 from kinesphere.parameterization.reused import misfit, reused_fit
 from kinesphere.parameterization.settings import (
     AxesSettings,
     ParameterizationSettings,
-    parse_counts,
-    parse_windows,
 )
 from kinesphere.parameterization.third_axis import fit_axes
 from kinesphere.parameterization.view import reliable_frames, view_joint

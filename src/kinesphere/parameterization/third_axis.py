@@ -102,6 +102,7 @@ def _serves(view: JointView, fit: JointFit, settings: ParameterizationSettings) 
         view.twist_known[view.calibration],
         settings.angles,
         settings.twist,
+        view.samples.rate,
     )
     far = solved.excess > np.deg2rad(settings.angles.unreachable)
     edge = solved.sines < np.sin(np.deg2rad(settings.angles.singular))

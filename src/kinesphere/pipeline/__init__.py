@@ -2,8 +2,8 @@
 
 from kinesphere.pipeline.choice import MOTION_ALONE as MOTION_ALONE
 from kinesphere.pipeline.choice import model_for as model_for
+from kinesphere.pipeline.clock import Progress as Progress
 from kinesphere.pipeline.line import STAGES as STAGES
-from kinesphere.pipeline.line import Progress as Progress
 from kinesphere.pipeline.line import solve as solve
 from kinesphere.pipeline.retargeting import retarget as retarget
 from kinesphere.pipeline.settings import Settings as Settings

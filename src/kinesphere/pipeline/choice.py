@@ -72,6 +72,7 @@ def why_no_model(recording: Recording, subject: str | None) -> str:
     return (
         f"no built-in model fits these {recording.n_markers} labels ({nearest} of its labels): "
         "bodies and joints are from motion alone; if the person wears one of these layouts "
-        "without some limbs, name it with --model: limbs without markers are left out; a model of "
-        "your own says which marker sits on which segment ('kinesphere model')"
+        "without some limbs, or without its labels, name it with --model: limbs without markers "
+        "are left out, points without labels are labelled first; a model of your own says which "
+        "marker sits on which segment ('kinesphere model')"
     )

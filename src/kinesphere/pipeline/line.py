@@ -1,28 +1,21 @@
 """The straight line: a recording goes in, joint parameters come out."""
 
-import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import TypeAlias
 
-from kinesphere import __version__
-from kinesphere.data import Json, Recording, Solution, Step, TopologicalModel
+from kinesphere.data import Recording, Solution, TopologicalModel
 from kinesphere.errors import BadRecording
 from kinesphere.labelling import match_labels
 from kinesphere.normalization import Facing, normalize
-from kinesphere.parameterization import parameterize
 from kinesphere.pipeline.choice import MOTION_ALONE, model_for, with_labels
-from kinesphere.pipeline.doubts import calibration_doubts, with_checks
+from kinesphere.pipeline.clock import Clock, Progress
+from kinesphere.pipeline.doubts import with_checks
 from kinesphere.pipeline.motion_alone import discovered, normalized_somehow
-from kinesphere.pipeline.reuse import Source, skeletons_of, with_best_axes
+from kinesphere.pipeline.reuse import Source, parameterized, skeletons_of
 from kinesphere.pipeline.settings import Settings
 from kinesphere.pipeline.surface import body_for, surface_for
 from kinesphere.quality import orient
 from kinesphere.skeleton import fill_markers, fit_skeleton
-
-Progress: TypeAlias = Callable[[str, int, int], None]
-"""Called with the stage about to run, its number from 0, and how many there are."""
 
 STAGES = ("labelling", "orientation", "skeleton", "normalization", "parameterization", "surface")
 """In this order; from motion alone the first one is ``discovery`` instead."""
@@ -76,7 +69,7 @@ def solve(
     settings = Settings() if settings is None else settings
     if recording.n_frames == 0 or not recording.seen.any():
         raise BadRecording("the recording holds no marker position: nothing to solve")
-    clock = _Clock(progress)
+    clock = Clock(progress, len(STAGES))
     body = body_for(settings.surface)  # first, so that a file that cannot be used costs no wait
     given = model_for(recording, model, subject)
     with clock.stage("discovery" if given is None else "labelling"):
@@ -104,18 +97,8 @@ def solve(
         aligned = normalize if given else normalized_somehow
         motion = aligned(motion, settings.normalization, facing)
     with clock.stage("parameterization"):
-        others = skeletons_of(calibration_from)
-        bearing, places = with_best_axes(motion.skeleton, others)
-        reuse = bearing if others else None
-        doubts = calibration_doubts(motion, calibration, others)
-        if doubts or len(others) > 1:
-            found: dict[str, Json] = {}
-            if len(others) > 1:
-                found["axes_from"] = {name: number + 1 for name, number in places.items()}
-            step = Step("calibration", {}, found, doubts, __version__)
-            motion = replace(motion, history=(*motion.history, step))
-        parameters = parameterize(
-            motion, settings.parameterization, calibration=calibration, reuse=reuse
+        parameters = parameterized(
+            motion, settings.parameterization, calibration, skeletons_of(calibration_from)
         )
     with clock.stage("surface"):
         surface, step = surface_for(motion, settings.surface, body)
@@ -128,19 +111,3 @@ def solve(
         seconds=clock.seconds,
         surface=surface,
     )
-
-
-class _Clock:
-    """Tells of stages and keeps how long each took."""
-
-    def __init__(self, progress: Progress | None) -> None:
-        self.progress = progress
-        self.seconds: dict[str, float] = {}
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        if self.progress is not None:
-            self.progress(name, len(self.seconds), len(STAGES))
-        start = time.perf_counter()
-        yield
-        self.seconds[name] = time.perf_counter() - start

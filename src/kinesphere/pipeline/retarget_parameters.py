@@ -47,6 +47,7 @@ def parameters_like(
                 known,
                 settings.angles,
                 settings.twist,
+                motion.rate,
             )
             angles[~same, j], twists[~same, j] = solved.angles[~same], solved.twists[~same]
             flags[gap & ~same, j] = JointFlag.FILLED

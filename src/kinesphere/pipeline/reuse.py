@@ -6,8 +6,10 @@ from typing import TypeAlias
 
 import numpy as np
 
-from kinesphere.data import Joint, Json, Skeleton, Solution, Step
-from kinesphere.parameterization import told_of
+from kinesphere import __version__
+from kinesphere.data import Joint, Json, Motion, Parameters, Skeleton, Solution, Step
+from kinesphere.parameterization import ParameterizationSettings, parameterize, told_of
+from kinesphere.pipeline.doubts import calibration_doubts
 
 Source: TypeAlias = Solution | Skeleton
 """Another recording of the same person, solved."""
@@ -22,6 +24,43 @@ def skeletons_of(sources: Source | Sequence[Source] | None) -> tuple[Skeleton, .
         replace(s.skeleton, history=s.parameters.history) if isinstance(s, Solution) else s
         for s in several
     )
+
+
+def parameterized(
+    motion: Motion,
+    settings: ParameterizationSettings,
+    calibration: tuple[float, float] | None,
+    others: Sequence[Skeleton],
+) -> Parameters:
+    """Return the joint parameters of a motion, about its own axes or those of other recordings.
+
+    What speaks against the calibration window or the others becomes a step of the history.
+
+    Parameters
+    ----------
+    motion
+        Normalized.
+    settings
+    calibration
+        (start, end) in s since the first stored frame: where the main movements are performed.
+    others
+        As `skeletons_of` returns them; empty for the motion's own axes.
+
+    Raises
+    ------
+    DegenerateMotion, BadSetting
+        As `kinesphere.parameterization.parameterize` does.
+    """
+    bearing, places = with_best_axes(motion.skeleton, others)
+    doubts = calibration_doubts(motion, calibration, others)
+    if doubts or len(others) > 1:
+        found: dict[str, Json] = {}
+        if len(others) > 1:
+            found["axes_from"] = {name: number + 1 for name, number in places.items()}
+        step = Step("calibration", {}, found, doubts, __version__)
+        motion = replace(motion, history=(*motion.history, step))
+    reuse = bearing if others else None
+    return parameterize(motion, settings, calibration=calibration, reuse=reuse)
 
 
 def with_best_axes(

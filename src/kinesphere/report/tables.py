@@ -7,6 +7,7 @@ import numpy as np
 
 from kinesphere.data import Array, Joint, JointFlag, Json, PoseFlag, Solution, Step
 from kinesphere.data.sticks import side_of
+from kinesphere.report.axes_words import axes_in_detail
 from kinesphere.report.notices import Notice, names_of, notices
 from kinesphere.report.wording import counted, finding_in_words, number_in_words
 
@@ -38,6 +39,8 @@ class JointRow:
     note: str
     axes: str
     """Where the axes come from and how sure they are."""
+    axes_note: str
+    """How well each of them is determined."""
     angles: tuple[str, ...]
     """5 % … 95 % of each angle and of the twist, in degrees."""
     rebuilt: str
@@ -245,6 +248,7 @@ def _joint_row(solution: Solution, j: int, joint: Joint) -> JointRow:
         observability=joint.observability,
         note=joint.note,
         axes=axes,
+        axes_note=axes_in_detail(joint.name, parameters.history),
         angles=tuple(
             degrees_span(np.rad2deg(values))
             for values in (*parameters.angles[:, j].T, parameters.twists[:, j])

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.geometry.rigid import RigidFit, fit_rigid, fit_shape, into_frame, pose_covariance
+from kinesphere.geometry.pose_errors import pose_covariance
+from kinesphere.geometry.rigid import RigidFit, fit_rigid, fit_shape, into_frame
 from kinesphere.geometry.vectors import lengths
 
 NOISE = 0.001

@@ -7,14 +7,14 @@ import numpy as np
 from kinesphere.data import Array, JointModel, TopologicalModel
 from kinesphere.errors import DegenerateMotion
 from kinesphere.geometry.centres import CentreFit, Turning, View, fit_centre
+from kinesphere.geometry.pose_errors import point_covariance, pose_covariance
 from kinesphere.geometry.rigid import (
     RigidFit,
     into_frame,
     out_of_frame,
-    point_covariance,
-    pose_covariance,
 )
 from kinesphere.geometry.rotations import mean_rotation
+from kinesphere.geometry.skin import joint_modes, skin_noise
 from kinesphere.skeleton.body import NOISE, Body, measure_shape, robust_rms
 from kinesphere.skeleton.landmarks import expected_centre
 from kinesphere.skeleton.limb_axes import find_axes
@@ -101,7 +101,7 @@ def _measure_limb(
         seen_by_parent,
         np.hypot(noise, NOISE),
         parent.pose_covariance,
-        None if solid is None else _turning(solid, parent),
+        None if solid is None else _turning(solid, parent, own, cloud(parent.labels, sample)),
     )
     fit = fit_centre(
         view,
@@ -137,14 +137,29 @@ def _measure_limb(
     return body, measured
 
 
-def _turning(solid: tuple[Array, Array, RigidFit], parent: Body) -> Turning:
+def _turning(
+    solid: tuple[Array, Array, RigidFit], parent: Body, own: Array, others: Array
+) -> Turning:
     """Return how a limb with a pose of its own turns in its parent."""
     shape, noise, pose = solid
+    rotations = np.swapaxes(parent.rotations, 1, 2) @ pose.rotations
+    known = np.isfinite(rotations).all(axis=(1, 2))
+    skin = seeing = None
+    if known.any() and len(parent.labels) > 2:
+        modes = np.full(parent.shifts.shape, np.nan)
+        modes[known] = joint_modes(rotations[known])
+        mine = skin_noise(into_frame(pose.rotations, pose.shifts, own)[known], shape, modes[known])
+        theirs = skin_noise(
+            into_frame(parent.rotations, parent.shifts, others)[known], parent.shape, modes[known]
+        )
+        skin, seeing = pose_covariance(shape, mine), pose_covariance(parent.shape, theirs)
     return Turning(
-        np.swapaxes(parent.rotations, 1, 2) @ pose.rotations,
+        rotations,
         into_frame(parent.rotations, parent.shifts, pose.shifts[:, None])[:, 0],
         pose_covariance(shape, np.hypot(noise, NOISE)),
         float(np.hypot(np.sqrt(np.mean(noise**2)), NOISE)),
+        skin,
+        seeing,
     )
 
 

@@ -99,7 +99,7 @@ def _centre_view(a: Array, b: Array, pose_a: RigidFit | None, pose_b: RigidFit |
         if len(known) == 0:
             return UNSEEN
         centre = sphere_centre(by_a, np.median(known, axis=0), ridge=1e-2)
-        off = _deviations(np.linalg.norm(by_a - centre, axis=2))
+        off = robust_deviations(np.linalg.norm(by_a - centre, axis=2))
         own = into_frame(pose_a.rotations, pose_a.shifts, a)
         far = _nearest(own, centre) + _nearest(by_a, centre)
         return JointView(float(np.sqrt(np.mean(off**2))), far)
@@ -128,12 +128,12 @@ def _distance_view(a: Array, b: Array) -> JointView:
         if not np.isfinite(distance).any(axis=0).all():
             continue
         usual = min(float(np.median(d[np.isfinite(d)])) for d in distance.T)
-        view = JointView(float(_deviations(distance).mean()), usual)
+        view = JointView(float(robust_deviations(distance).mean()), usual)
         best = min(best, view, key=lambda view: view.cost)
     return best
 
 
-def _deviations(distances: Array) -> Array:
+def robust_deviations(distances: Array) -> Array:
     """Return the standard deviation of each column, its outer tenth left out, (n, m) m → (m,) m."""
     out = np.zeros(distances.shape[1])
     for i, column in enumerate(distances.T):

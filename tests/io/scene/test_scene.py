@@ -105,10 +105,73 @@ def test_the_world_is_turned_and_scaled(changed, folder, film):
     for one, other in zip(scene.cameras, film.scene.cameras, strict=True):
         x, y, z = other.centre
         assert_allclose(one.centre, [x, z, -y], atol=1e-12)
-    millimetres = text.replace('unit = "m"', 'unit = "mm"')
-    (folder / "calibration.toml").write_text(millimetres)
+    (folder / "calibration.toml").write_text(text.replace('unit = "m"', 'unit = "cm"'))
     scene = read_scene(folder / "SCENE.toml")
-    assert_allclose(scene.cameras[0].centre, film.scene.cameras[0].centre / 1000, atol=1e-9)
+    assert_allclose(scene.cameras[0].centre, film.scene.cameras[0].centre / 100, atol=1e-9)
+
+
+@pytest.mark.parametrize(("said", "scale", "meant"), [("m", 1000, "mm"), ("mm", 1, "m")])
+def test_a_unit_no_room_has_is_refused_with_the_one_that_may_be_meant(folder, said, scale, meant):
+    text = (folder / "calibration.toml").read_text().replace('unit = "m"', f'unit = "{said}"')
+    for line in [line for line in text.splitlines() if line.startswith("translation")]:
+        numbers = np.array(line.split("[")[1].rstrip("]").split(","), dtype=float) * scale
+        text = text.replace(line, f"translation = {numbers.tolist()}")
+    (folder / "calibration.toml").write_text(text)
+    with pytest.raises(BadScene, match=f'unit = "{meant}" may be meant'):
+        read_scene(folder / "SCENE.toml")
+
+
+def test_an_up_axis_that_no_camera_stands_by_is_doubted(folder):
+    text = (folder / "calibration.toml").read_text()
+    (folder / "calibration.toml").write_text(text.replace('up = "+y"', 'up = "-y"'))
+    (warning,) = read_scene(folder / "SCENE.toml").history[0].warnings
+    assert "up is -y, but the cameras' images have +y upwards" in warning
+
+
+def test_one_camera_is_not_enough(folder):
+    text = (folder / "SCENE.toml").read_text()
+    head, first, *_, last = text.split("[[camera]]")
+    body = last.partition("[body]")[2]
+    (folder / "SCENE.toml").write_text(f"{head}[[camera]]{first}[body]{body}")
+    with pytest.raises(BadScene, match="1 camera cannot see how far"):
+        read_scene(folder / "SCENE.toml")
+
+
+def test_images_of_one_colour_are_instants_without_one(folder):
+    black = np.zeros_like(read_image(folder / "cam02" / "000003.png"))
+    for i in (3, 4, 6):
+        write_image(black, folder / "cam02" / f"{i:06d}.png")
+    scene = read_scene(folder / "SCENE.toml")
+    blind = [frame.images[1] is None for frame in scene.frames()]
+    assert blind == [i in (3, 4, 6) for i in range(8)]
+    (note,) = scene.notes
+    assert "cam02 shows one colour and nothing else in frames 4–5 and 7" in note
+
+
+def test_single_frames_of_a_video_are_sought(tmp_path, film):
+    pytest.importorskip("av")
+    scene = read_scene(write_scene(film.scene, tmp_path / "v", "mp4"))
+    one_by_one = list(scene.frames())
+    for i in (7, 2, 0, 5):
+        for a, b in zip(scene.frame(i).images, one_by_one[i].images, strict=True):
+            assert_array_equal(a, b)
+
+
+def test_damage_in_a_video_is_told_and_shifts_nobody(tmp_path, film):
+    pytest.importorskip("av")
+    scene = read_scene(write_scene(film.scene, tmp_path / "v", "mkv"))
+    whole = list(scene.frames())
+    path = tmp_path / "v" / "cam02.mkv"
+    raw = bytearray(path.read_bytes())
+    raw[len(raw) // 2 : len(raw) // 2 + 4000] = bytes(4000)
+    path.write_bytes(raw)
+    damaged = read_scene(tmp_path / "v" / "SCENE.toml")
+    frames = list(damaged.frames())
+    same = [np.array_equal(a.images[0], b.images[0]) for a, b in zip(whole, frames, strict=False)]
+    assert all(same)
+    assert_array_equal(frames[0].images[1], whole[0].images[1])
+    told = [*damaged.notes, *damaged.history[0].warnings]
+    assert any("cam02" in sentence for sentence in told)
 
 
 def test_what_the_calibration_does_not_say_is_guessed_aloud(folder, film):

@@ -36,6 +36,13 @@ def as_told(discovery):
     )
 
 
+def partition(discovery):
+    """Return bodies as sets of markers, and pairs of those that meet."""
+    bodies = {segment.name: frozenset(segment.markers) for segment in discovery.model.segments}
+    joints = {(bodies[joint.parent], bodies[joint.child]) for joint in discovery.model.joints}
+    return set(bodies.values()), joints
+
+
 def truly_named(limbs):
     return all(own == {name} for name, own in limbs.items())
 
@@ -59,6 +66,39 @@ def test_turned_moved_and_reversed_it_is_the_same_person(found, recorded, rng):
     turn = Rotation.random(rng=rng).as_matrix()
     for markers in (recorded.markers @ turn.T + rng.normal(size=3), recorded.markers[::-1]):
         assert as_told(discover(replace(recorded, markers=np.array(markers)))) == as_told(found)
+
+
+@pytest.mark.parametrize("unit", [0.1, 10.0])
+def test_another_unit_gives_the_same_bodies_and_tree(found, recorded, unit):
+    other = discover(replace(recorded, markers=unit * recorded.markers))
+    assert partition(other) == partition(found)
+    assert all(segment.name.startswith("limb_") for segment in other.model.segments)
+    assert any("unit of length is wrong" in doubt for doubt in other.step.warnings)
+    here, there = found.step.findings, other.step.findings
+    assert there["within_bodies_mm"] == pytest.approx(unit * here["within_bodies_mm"], rel=0.01)
+    costs = [sorted(j["cost_mm"] for j in told["joints_found"].values()) for told in (here, there)]
+    assert costs[1] == pytest.approx(unit * np.array(costs[0]), rel=0.01)
+
+
+@pytest.mark.parametrize("unit", [0.1, 10.0])
+def test_another_unit_gives_the_same_hand(unit):
+    rng = np.random.default_rng(4)
+    performance = make_performance(rng, plan=HAND, n_frames=6000)
+    recording = spoil_with_noise(performance.recording, rng, deviation=0.0002)
+    other = discover(replace(recording, markers=unit * recording.markers))
+    assert partition(other) == partition(discover(recording))
+
+
+def test_numbers_of_limbs_do_not_depend_on_the_order_of_markers(rng):
+    performance = make_performance(np.random.default_rng(3), plan=QUADRUPED, n_frames=6000)
+    recording = spoil_with_noise(performance.recording, rng, deviation=0.001)
+    order = rng.permutation(recording.n_markers)
+    shuffled = replace(
+        recording,
+        markers=np.ascontiguousarray(recording.markers[:, order]),
+        labels=tuple(recording.labels[i] for i in order),
+    )
+    assert as_told(discover(shuffled)) == as_told(discover(recording))
 
 
 def test_order_of_markers_does_not_matter(found, recorded, rng):

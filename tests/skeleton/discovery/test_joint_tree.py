@@ -6,14 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from kinesphere.skeleton.discovery.joint_tree import (
-    Edge,
-    JointCosts,
-    contracted,
-    find_forest,
-    rerooted,
-    similar_forests,
-)
+from kinesphere.skeleton.discovery.forest import Edge, contracted, rerooted
+from kinesphere.skeleton.discovery.joint_costs import JointCosts
+from kinesphere.skeleton.discovery.joint_tree import find_forest
+from kinesphere.skeleton.discovery.rival_trees import similar_forests
 
 FRAMES = 300
 NOISE = 0.001  # m
@@ -29,7 +25,7 @@ def true_bodies(owner):
 @pytest.fixture(scope="module")
 def forest(recorded, true_bodies):
     """Return the forest of the true bodies."""
-    return find_forest(JointCosts(recorded.markers[::3], 1.0), true_bodies[1])
+    return find_forest(JointCosts(recorded.markers[::3]), true_bodies[1])
 
 
 def edges_of(forest):
@@ -88,7 +84,7 @@ def test_what_moves_by_itself_is_a_tree_of_its_own(
     away = stranger + np.array([2.0, 0.0, 0.0])
     points = np.concatenate([recorded.markers, away], axis=1)
     bodies = [*true_bodies[1], np.arange(len(owner), len(owner) + 4)]
-    forest = find_forest(JointCosts(points[::3], 1.0), bodies)
+    forest = find_forest(JointCosts(points[::3]), bodies)
     assert [len(tree) for tree in forest.trees] == [len(true_bodies[1]), 1]
     assert forest.trees[1] == (len(bodies) - 1,)
 
@@ -99,7 +95,7 @@ def test_bodies_that_have_nothing_to_do_with_each_other_are_as_many_trees(
 ):
     points, of = moving_bodies(rng, sizes, apart=1.0, noise=0.0005)
     bodies = [np.flatnonzero(of == k) for k in range(len(sizes))]
-    forest = find_forest(JointCosts(points, 1.0), bodies)
+    forest = find_forest(JointCosts(points), bodies)
     assert len(forest.trees) == len(sizes)
     assert forest.edges == ()
 
@@ -127,7 +123,7 @@ def test_similar_forests_swap_doubtful_edges_only_and_stay_trees(forest):
 
 
 def test_swaps_that_would_make_a_ring_are_left_out(forest, monkeypatch):
-    monkeypatch.setattr("kinesphere.skeleton.discovery.joint_tree.SWAPPED", 0.99)
+    monkeypatch.setattr("kinesphere.skeleton.discovery.rival_trees.SWAPPED", 0.99)
     found = [other for other, _ in similar_forests(forest, 0)]
     assert len(found) > 50
     assert all(len(other.trees) == 1 for other in found)
@@ -148,7 +144,7 @@ def test_two_bodies_made_one_leave_the_rest_of_the_tree(forest):
 
 def test_costs_do_not_depend_on_who_is_asked_first(recorded, true_bodies):
     points = recorded.markers[::3]
-    one, other = JointCosts(points, 1.0), JointCosts(points, 1.0)
+    one, other = JointCosts(points), JointCosts(points)
     for a, b in pairwise(true_bodies[1]):
         assert one.between(a, b) == pytest.approx(other.between(b, a), rel=0.05)
 
@@ -173,9 +169,9 @@ STILL = np.array(
 def test_a_foot_that_stands_still_meets_its_shank_and_a_thing_beside_does_not(rng):
     bodies = [np.arange(4), np.arange(4, 8)]
     foot = swinging(rng, (0.0, 0.0, 0.0), STILL)
-    assert len(find_forest(JointCosts(foot, 1.0), bodies).trees) == 1
+    assert len(find_forest(JointCosts(foot), bodies).trees) == 1
     thing = swinging(rng, (0.5, 0.0, 0.0), STILL)
-    assert len(find_forest(JointCosts(thing, 1.0), bodies).trees) == 2
+    assert len(find_forest(JointCosts(thing), bodies).trees) == 2
 
 
 def test_two_that_stand_about_are_not_joined_by_standing(rng):
@@ -185,5 +181,5 @@ def test_two_that_stand_about_are_not_joined_by_standing(rng):
     one, other = sway + STILL
     points = np.concatenate([one, other + np.array([0.6, 0.0, 0.0])], axis=1)
     points += rng.normal(scale=NOISE, size=points.shape)
-    forest = find_forest(JointCosts(points, 1.0), [np.arange(4), np.arange(4, 8)])
+    forest = find_forest(JointCosts(points), [np.arange(4), np.arange(4, 8)])
     assert len(forest.trees) == 2

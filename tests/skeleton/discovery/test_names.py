@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from kinesphere.skeleton import discover
-from kinesphere.skeleton.discovery.joint_tree import Edge, Forest
+from kinesphere.skeleton.discovery.figure import Figure
+from kinesphere.skeleton.discovery.forest import Edge, Forest
 from kinesphere.skeleton.discovery.names import Names, shaken
 from kinesphere.skeleton.discovery.person import LIKELY, SHARPNESS, STATURE, Person
 from kinesphere.synthetic import HAND, make_performance, spoil_with_noise
@@ -84,3 +85,45 @@ def test_nobody_is_a_reading_too(monkeypatch):
         monkeypatch.setattr(module, "_judged", lambda _f, p, _n, cost=cost: replace(p, cost=cost))
         _, sure = module.find_person(None, (0, 1, 2, 3, 4))
         assert sure == pytest.approx(1 / (1 + np.exp(-margin / SHARPNESS)))
+
+
+@pytest.fixture
+def read_as(monkeypatch):
+    """Return costs of a leg pair on a trunk with arms, as a function of other bodies' places."""
+    from kinesphere.skeleton.discovery import person as module
+
+    monkeypatch.setattr(Figure, "length", lambda *_: 0.4)
+    monkeypatch.setattr(module, "_off", lambda *_: 0.0)
+
+    def cost(*extra, arms=2, feet=True, head=True):
+        """``extra`` bodies hang from the body given; the trunk is 0."""
+        edges = [(0, 1), (1, 2), (0, 3), (3, 4)]  # two legs: thigh, shank
+        edges += [(2, 5), (4, 6)] if feet else []
+        hands = [(0, 7), (7, 8), (0, 9), (9, 10)][: 2 * arms]
+        edges += hands + ([(0, 11)] if head else [])
+        edges += [(at, 12 + k) for k, at in enumerate(extra)]
+        bodies = sorted({b for edge in edges for b in edge})
+        beside = tuple(
+            tuple(sorted(b for edge in edges if a in edge for b in edge if b != a))
+            for a in range(max(bodies) + 1)
+        )
+        figure = Figure(
+            beside, np.zeros((1, 20, 3)), tuple(np.zeros((1, 2, 3)) for _ in beside), {}
+        )
+        legs = ((1, 2, 5), (3, 4, 6)) if feet else ((1, 2), (3, 4))
+        reading = Person(
+            0, None, legs, tuple([(0, (7, 8)), (0, (9, 10))][:arms]), 11 if head else None
+        )
+        return module._judged(figure, reading, len(bodies)).cost
+
+    return cost
+
+
+def test_what_is_missing_costs_more_than_what_is_held_and_less_than_what_is_left_over(read_as):
+    whole = read_as()
+    assert whole == 0
+    held, left_over = read_as(8), read_as(0)
+    for less in (read_as(arms=1), read_as(head=False), read_as(feet=False) / 2):
+        assert held < less < left_over
+    assert read_as(8, 12) == 2 * held  # what hangs from a thing that is held is held
+    assert read_as(8, 0) == held + left_over

@@ -103,3 +103,12 @@ def test_markers_never_seen_together_are_refused(rng):
         points[30 * m : 30 * m + 30, m] = rng.normal(size=(30, 3))
     with pytest.raises(BadRecording, match="no two markers"):
         measure_rigidity(points)
+
+
+@pytest.mark.parametrize(("wobble", "one"), [(2.5, True), (7.0, False)])
+def test_what_wanders_little_more_than_noise_is_one_body(rng, moving_bodies, wobble, one):
+    """Half of a body comes and goes: twice and five times what its steadiest distances wander."""
+    noise = 0.001
+    points, _ = moving_bodies(rng, (6,), noise=noise, n_frames=1000)
+    points[:, 3:] += wobble * noise * rng.normal(size=(len(points), 1, 3))
+    assert measure_rigidity(points).is_one_body == one

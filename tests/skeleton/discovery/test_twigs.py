@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from kinesphere.skeleton import DiscoverySettings, SkeletonSettings
-from kinesphere.skeleton.discovery.joint_tree import JointCosts
+from kinesphere.skeleton.discovery.joint_costs import JointCosts
 from kinesphere.skeleton.discovery.names import Names
 from kinesphere.skeleton.discovery.partition import find_partition
 from kinesphere.skeleton.discovery.twigs import without_twigs
@@ -36,7 +36,7 @@ def partition_of(points, bodies, monkeypatch):
     from kinesphere.skeleton.discovery.clustering import Clustering
 
     monkeypatch.setattr(module, "_clustered", lambda *_: Clustering(labels, {len(bodies): 1.0}))
-    return find_partition(points, 1.0, settings, LIMITS, JointCosts(points, 1.0))
+    return find_partition(points, settings, LIMITS, JointCosts(points))
 
 
 def told(partition, called):

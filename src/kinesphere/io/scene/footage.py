@@ -1,15 +1,21 @@
 """The cameras' streams side by side: one frame an instant."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from kinesphere.data import Camera, Frame, Image, Mask
+from kinesphere.data.spans import frame_spans
 from kinesphere.errors import UnreadableFile
-from kinesphere.io.scene.streams import ImageFolder, Stream, note
+from kinesphere.io.scene.image_folder import ImageFolder
+from kinesphere.io.scene.streams import Stream
 
 _HALF = 127
+_BLANK = 8
+"""Brightest less darkest value of an image that shows nothing; noise of a covered lens is less."""
+_SPARSE = 4
+"""Every so many pixels are looked at for that."""
 
 
 @dataclass
@@ -24,8 +30,21 @@ class RecordedFootage:
     mask_offsets: tuple[int, ...]
     references: tuple[Stream | None, ...]
     reference_offsets: tuple[int, ...]
-    notes: list[str] = field(default_factory=list)
-    """What went wrong while reading, a sentence each."""
+    odd_sizes: dict[int, str] = field(default_factory=dict)
+    """Camera → what was said of images that have another size than its first."""
+    blank: dict[int, set[int]] = field(default_factory=dict)
+    """Camera → frames whose image is of one colour."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What went wrong while reading so far, a sentence each."""
+        streams = (s for s in (*self.streams, *self.masks, *self.references) if s is not None)
+        blank = (
+            f"{self.cameras[c].name} shows one colour and nothing else in {self._called(at)}; it "
+            "is blind there"
+            for c, at in self.blank.items()
+        )
+        return (*self.odd_sizes.values(), *blank, *(note for s in streams for note in s.notes))
 
     def frames(self, start: int, stop: int, step: int = 1) -> Iterator[Frame]:
         """Yield frames ``start``, ``start + step``, … before ``stop``."""
@@ -48,28 +67,39 @@ class RecordedFootage:
             if (index - start) % step == 0:
                 yield Frame(
                     index,
-                    tuple(self._fitting(c, i, index) for c, i in enumerate(shown)),
+                    tuple(self._shown(c, i, index) for c, i in enumerate(shown)),
                     tuple(self._mask(c, i, index) for c, i in enumerate(shapes)),
                     tuple(self._mask(c, i, index) for c, i in enumerate(compared)),
                 )
-        for stream in (*self.streams, *self.masks):
-            for sentence in () if stream is None else stream.notes:
-                note(self.notes, sentence)
+
+    def _called(self, frames: Iterable[int]) -> str:
+        return frame_spans(frames, self.image_offsets[0] + 1)
 
     def _fitting(self, c: int, image: Image | None, index: int) -> Image | None:
         camera = self.cameras[c]
         if image is None or image.shape[:2] == (camera.height, camera.width):
             return image
-        note(
-            self.notes,
-            f"{camera.name}: from frame {index} images are {image.shape[1]} × {image.shape[0]} "
-            f"pixels instead of {camera.width} × {camera.height}; they are left out",
+        self.odd_sizes.setdefault(
+            c,
+            f"{camera.name}: from {self._called([index])} on images are {image.shape[1]} × "
+            f"{image.shape[0]} pixels, not {camera.width} × {camera.height}; they are left out",
         )
         return None
 
+    def _shown(self, c: int, image: Image | None, index: int) -> Image | None:
+        """Return a camera's image; None for one that shows nothing, as when it was not yet lit."""
+        fitting = self._fitting(c, image, index)
+        if fitting is not None and np.ptp(fitting[::_SPARSE, ::_SPARSE]) < _BLANK:
+            self.blank.setdefault(c, set()).add(index)
+            return None
+        return fitting
+
     def _mask(self, c: int, image: Image | None, index: int) -> Mask | None:
         fitting = self._fitting(c, image, index)
-        return None if fitting is None else np.asarray(fitting.max(axis=2) > _HALF)
+        if fitting is None:
+            return None
+        red, green, blue = (fitting[..., k] > _HALF for k in range(3))
+        return np.asarray(red | green | blue)  # numpy's max over three channels takes ten times
 
 
 def mask_offset(masks: Stream, images: Stream, offset: int, first_mask: int | None) -> int:

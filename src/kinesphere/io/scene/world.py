@@ -13,8 +13,12 @@ from kinesphere.io.units import metres_from_unit
 
 _FAR = 100.0
 """Cameras stand nearer together than this in metres, and farther apart in millimetres."""
+_NEAREST = 0.02
+"""m; cameras nearer to their middle cannot tell how far away a person is."""
 _SURE = 0.35
 """Mean cosine of the cameras' own up to an axis, and its lead over the next, to be believed."""
+_UPRIGHT = 0.8
+"""The same, to be believed against what is said."""
 
 
 @dataclass(frozen=True)
@@ -34,14 +38,19 @@ def settle_unit(said: str, cameras: Sequence[CalibratedCamera], where: str) -> U
     BadScene
         If nobody knows the unit that is said.
     """
+    centres = np.array([-c.rotation.T @ c.translation for c in cameras])
+    apart = np.linalg.norm(centres - centres.mean(axis=0), axis=1).max()
+    span = float(apart if len(cameras) > 1 else np.linalg.norm(centres[0]))
     if said:
         metres = metres_from_unit(said)
         if metres is None:
             raise BadScene(f'{where}: unit {said!r} is unknown; write unit = "m" or "mm"')
+        if not _NEAREST <= span * metres <= _FAR:
+            raise BadScene(
+                f'{where}: with unit = "{said}" the cameras stand {span * metres:.3g} m from their '
+                f'middle; unit = "{"mm" if span * metres > _FAR else "m"}" may be meant'
+            )
         return Units(metres, said, ())
-    centres = np.array([-c.rotation.T @ c.translation for c in cameras])
-    apart = np.linalg.norm(centres - centres.mean(axis=0), axis=1).max()
-    span = apart if len(cameras) > 1 else float(np.linalg.norm(centres[0]))
     guess = "mm" if span > _FAR else "m"
     warning = (
         f"{where} names no unit; {guess} is guessed, as the cameras stand {span:.3g} from their "
@@ -61,16 +70,23 @@ def settle_up(
         If it is not said and the cameras do not stand upright enough to tell, or what is said is
         no axis.
     """
-    if said:
-        for direction in DIRECTIONS:
-            if said == direction:
-                return direction, ()
-        raise BadScene(f"{where}: up = {said!r} is no axis; write one of {', '.join(DIRECTIONS)}")
     # the image's up, as people hold cameras; what cameras look down by cancels around the person
     ups = np.mean([-c.rotation[1] for c in cameras], axis=0)
     share = {d: float(vector_from_direction(d) @ ups) for d in DIRECTIONS}
     ranked = sorted(DIRECTIONS, key=lambda d: -share[d])
     best, second = ranked[0], ranked[1]
+    if said:
+        known = {str(d): d for d in DIRECTIONS}
+        if said not in known:
+            names = ", ".join(DIRECTIONS)
+            raise BadScene(f"{where}: up = {said!r} is no axis; write one of {names}")
+        direction = known[said]
+        if direction != best and share[best] > _UPRIGHT:
+            return direction, (
+                f"{where}: up is {direction}, but the cameras' images have {best} upwards; unless "
+                f'they hang like that, write up = "{best}"',
+            )
+        return direction, ()
     if share[best] - share[second] < _SURE:
         raise BadScene(
             f"{where} does not say which axis is up, and the cameras do not tell ({best} or "

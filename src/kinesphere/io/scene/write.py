@@ -3,21 +3,19 @@
 import json
 from collections.abc import Callable
 from contextlib import ExitStack
-from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from kinesphere.data import Image, Scene
-from kinesphere.errors import BadSetting, MissingExtra
+from kinesphere.data import Scene
+from kinesphere.errors import BadSetting
 from kinesphere.io.atomic import replacing_directory
 from kinesphere.io.calibration import write_calibration
 from kinesphere.io.images import write_image
+from kinesphere.io.video import VideoWriter
 
 KINDS = ("png", "jpg", "mkv", "mp4")
 """How images are kept: files without and with loss, a video without and with loss."""
-_CODECS = {"mkv": ("ffv1", "bgr0", {"g": "1"}), "mp4": ("libx264", "yuv420p", {"crf": "16"})}
+_VIDEOS = {"mkv": None, "mp4": 16}
+"""Quality of the kinds that are videos."""
 
 
 def write_scene(
@@ -58,7 +56,7 @@ def _is_ours(folder: Path) -> bool:
 def _write_images(
     scene: Scene, folder: Path, kind: str, progress: Callable[[str, int, int], None] | None
 ) -> None:
-    video = kind in _CODECS
+    video = kind in _VIDEOS
     for camera, plate in zip(scene.cameras, scene.plates, strict=True):
         if not video:
             (folder / camera.name).mkdir()
@@ -66,7 +64,7 @@ def _write_images(
             write_image(plate, folder / f"{camera.name}_plate.png")
     with ExitStack() as stack:
         films = [
-            stack.enter_context(_Film(folder / f"{c.name}.{kind}", kind, scene.rate))
+            stack.enter_context(VideoWriter(folder / f"{c.name}.{kind}", scene.rate, _VIDEOS[kind]))
             if video
             else None
             for c in scene.cameras
@@ -98,7 +96,7 @@ def _scene_toml(scene: Scene, folder: Path, kind: str) -> str:
         f"rate_hz = {scene.rate!r}",
     ]
     for camera in scene.cameras:
-        images = f"{camera.name}.{kind}" if kind in _CODECS else camera.name
+        images = f"{camera.name}.{kind}" if kind in _VIDEOS else camera.name
         lines += [
             "",
             "[[camera]]",
@@ -110,7 +108,7 @@ def _scene_toml(scene: Scene, folder: Path, kind: str) -> str:
         for what in ("masks", "reference_masks"):
             if (folder / f"{camera.name}_{what}").is_dir():
                 lines.append(f"{what} = {json.dumps(f'{camera.name}_{what}')}")
-        if kind in _CODECS:
+        if kind in _VIDEOS:
             lines.append("first_mask = 0")
     body = scene.body
     lines += ["", "[body]", f"model = {json.dumps(body.model)}", f"mesh = {json.dumps(body.mesh)}"]
@@ -118,43 +116,3 @@ def _scene_toml(scene: Scene, folder: Path, kind: str) -> str:
         lines.append(f"height_m = {body.height!r}")
     lines.append(f"fit = {json.dumps(body.fit)}")
     return "\n".join(lines) + "\n"
-
-
-class _Film:
-    """A video being written."""
-
-    def __init__(self, path: Path, kind: str, rate: float) -> None:
-        try:
-            import av
-        except ImportError:
-            raise MissingExtra(
-                "videos need PyAV, which is not installed: pip install 'kinesphere[markerless]'"
-            ) from None
-        self.av: Any = av
-        self.path, self.kind = path, kind
-        self.rate = Fraction(rate).limit_denominator(1001)
-        self.begun = False
-
-    def __enter__(self) -> "_Film":
-        codec, pixels, options = _CODECS[self.kind]
-        self.container = self.av.open(str(self.path), "w")
-        self.stream = self.container.add_stream(codec, rate=self.rate, options=options)
-        self.stream.pix_fmt = pixels
-        return self
-
-    def add(self, image: Image) -> None:
-        """Write one more frame."""
-        if not self.begun:
-            self.stream.height, self.stream.width = image.shape[:2]
-            if any(side % 2 for side in image.shape[:2]) and self.kind == "mp4":
-                self.stream.pix_fmt = "yuv444p"  # halved colours need even sides
-            self.begun = True
-        frame = self.av.VideoFrame.from_ndarray(np.ascontiguousarray(image), format="rgb24")
-        for packet in self.stream.encode(frame):
-            self.container.mux(packet)
-
-    def __exit__(self, *_: object) -> None:
-        if self.begun:
-            for packet in self.stream.encode():
-                self.container.mux(packet)
-        self.container.close()

@@ -29,6 +29,7 @@ def pair_costs(
     log_variance: Array,
     stiller: float,
     outlier: float,
+    only: int,
     costs: Single,
 ) -> None:
     """Fill the cost of every two points bearing every two labels.
@@ -44,6 +45,8 @@ def pair_costs(
         What a deviation below the expected one counts, beside one above it.
     outlier
         What a pair costs about which nothing is known: the zero of all costs.
+    only
+        The label whose costs are filled; −1 for all.
     costs : (n_points, n_labels, n_points, n_labels)
     """
     n, m = mean.shape[0], expected.shape[0]
@@ -53,6 +56,8 @@ def pair_costs(
                 continue
             for i in range(m):
                 for j in range(m):
+                    if only >= 0 and i != only and j != only:
+                        continue
                     mu = expected[i, j]
                     if i == j or not np.isfinite(mu):
                         continue

@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array
 from kinesphere.geometry.rotations import mean_rotation, tangent_basis
+from kinesphere.parameterization.axes.stratify import turning_weights
 from kinesphere.parameterization.samples import JointSamples, Phase
 
 FLOOR = float(np.deg2rad(1e-4))  # a spread below this is rounding, not noise
@@ -44,15 +45,27 @@ class ConeAndTwist:
     """(n, 3) of the same quaternions."""
     phase: NDArray[np.intp]
     """(n,)"""
+    weights: Array
+    """(n,) how much each frame counts, 1 on the mean."""
     effective: float
     """How many frames have errors of their own."""
 
     @classmethod
-    def of(cls, samples: JointSamples, phases: tuple[Phase, ...], most: int) -> "ConeAndTwist":
-        """Return the frames of some phases, evenly thinned to about ``most``."""
+    def of(
+        cls, samples: JointSamples, phases: tuple[Phase, ...], most: int, cell: float = 0.0
+    ) -> "ConeAndTwist":
+        """Return the frames of some phases, evenly thinned to about ``most``.
+
+        With a ``cell``, in rad, frames count by how far they turn: a limb that dwells says nothing
+        new.
+        """
         length = sum(b - a for a, b in phases)
         stride = max(1, length // most)
         parts = [samples.rotations[a:b:stride] for a, b in phases]
+        weights = np.ones(sum(len(part) for part in parts))
+        if cell > 0:
+            each = [turning_weights(np.ascontiguousarray(part), cell) for part in parts]
+            weights = np.concatenate(each)
         counts = [len(part) for part in parts]
         means = [mean_rotation(part) for part in parts]
         turns = [part @ mean.T for part, mean in zip(parts, means, strict=True)]
@@ -63,6 +76,7 @@ class ConeAndTwist:
             scalars=q[:, 3],
             vectors=q[:, :3],
             phase=np.repeat(np.arange(len(parts)), counts),
+            weights=weights / weights.mean(),
             effective=min(float(len(q)), max(1.0, length / samples.rate / MEMORY)),
         )
 
@@ -131,7 +145,7 @@ def likeliest_axis(
     axis = start / np.linalg.norm(start)
     share = errors.effective / len(errors.positions)
     n = len(errors.positions)
-    of_cone, of_twist = np.ones(n), np.ones(n)
+    of_cone, of_twist = errors.weights, errors.weights
     opening = np.nan
     cost = np.inf
     for _ in range(rounds):
@@ -143,14 +157,14 @@ def likeliest_axis(
         tilted = list((colatitudes[1:] - colatitude) / STEP)
         twisted = list((twists[1:] - twist) / STEP)
         if cone is not None:
-            opening = float(np.median(colatitude))
+            opening = _median(colatitude, errors.weights)
             out = colatitude - opening
         else:
             out = errors.centred(colatitude, of_cone)
         turned = errors.centred(twist, of_twist)
-        spreads = _spread(out), _spread(turned)
-        of_cone = _weights(out, spreads[0], freedom)
-        of_twist = _weights(turned, spreads[1], freedom)
+        spreads = _spread(out, errors.weights), _spread(turned, errors.weights)
+        of_cone = errors.weights * _weights(out, spreads[0], freedom)
+        of_twist = errors.weights * _weights(turned, spreads[1], freedom)
         scales = np.sqrt(share * of_cone) / spreads[0], np.sqrt(share * of_twist) / spreads[1]
         if cone is None:
             out = errors.centred(colatitude, of_cone)
@@ -179,8 +193,18 @@ def likeliest_axis(
     return np.asarray(axis), cost
 
 
-def _spread(errors: Array) -> float:
-    return max(NORMAL_MAD * float(np.median(np.abs(errors))), FLOOR)
+def _spread(errors: Array, weights: Array) -> float:
+    return max(NORMAL_MAD * _median(np.abs(errors), weights), FLOOR)
+
+
+def _median(values: Array, weights: Array) -> float:
+    """Return the value with half of the weight on either side."""
+    order = np.argsort(values, kind="stable")
+    before = np.cumsum(weights[order])
+    half = before[-1] / 2
+    low = int(np.searchsorted(before, half * (1 - 1e-12)))
+    high = int(np.searchsorted(before, half * (1 + 1e-12)))
+    return float(values[order[low]] + values[order[min(high, len(values) - 1)]]) / 2
 
 
 def _weights(errors: Array, spread: float, freedom: float) -> Array:

@@ -9,6 +9,8 @@ from kinesphere.parameterization.samples import JointSamples
 
 MOST_FRAMES = 400  # more change the axis by less than its uncertainty
 TRIAL_FRAMES = 80  # enough to tell starts apart
+CELLS = 64  # of the stratification, on a bend there or back; more let a limb that dwells count,
+# fewer leave noise less to average over
 ROUNDS = (6, 20)  # of a trial and of the last fit
 FREEDOM = 4.0  # heavy tails: a joint called a hinge leaves its cone at times
 USUAL_CONE = Cone(np.pi / 2, np.deg2rad(20.0))  # carrying angles reach 20°; without any such
@@ -31,8 +33,15 @@ def hinge_axis(samples: JointSamples, starts: Array) -> Array:
     parts = [samples.positions[a:b] for a, b in samples.phases]
     centred = np.concatenate([part - part.mean(axis=0) for part in parts])
     tried = np.vstack([starts, plane_normal(centred), plane_normal(moving_positions(samples))])
-    few = ConeAndTwist.of(samples, samples.phases, TRIAL_FRAMES)
+    cell = _arc(parts) / CELLS
+    few = ConeAndTwist.of(samples, samples.phases, TRIAL_FRAMES, cell)
     ends = (likeliest_axis(few, start, ROUNDS[0], USUAL_CONE, FREEDOM) for start in tried)
     best = min(ends, key=lambda end: end[1])[0]
-    errors = ConeAndTwist.of(samples, samples.phases, MOST_FRAMES)
+    errors = ConeAndTwist.of(samples, samples.phases, MOST_FRAMES, cell)
     return likeliest_axis(errors, best, ROUNDS[1], USUAL_CONE, FREEDOM)[0][None]
+
+
+def _arc(parts: list[Array]) -> float:
+    """Return how far the limb goes from one side to the other in its longest movement, rad."""
+    chords = (np.linalg.norm(part - part[0], axis=1).max() for part in parts)
+    return float(2 * np.arcsin(min(1.0, max(chords) / 2)))

@@ -3,6 +3,7 @@
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.kernels.jit import kernel
 
 
 def one_per_cell(points: Array, cell: float) -> Array:
@@ -41,3 +42,26 @@ def windowed(points: Array, cell: float) -> Array:
             return np.asarray(points[kept])
         kept.append(i)
         last = points[i]
+
+
+@kernel
+def turning_weights(rotations: Array, cell: float) -> Array:
+    """Return how much each rotation counts, (n, 3, 3) and cell size in rad → (n,).
+
+    As `windowed`, of whole orientations, but nothing is left out: from one representative to the
+    next, a turn by a cell, all frames together count 1.
+    """
+    weights = np.empty(len(rotations))
+    least = 1.0 + 2.0 * np.cos(cell)  # the trace of a turn by a cell
+    last = 0
+    for i in range(len(rotations) + 1):
+        trace = -np.inf
+        if i < len(rotations):
+            trace = 0.0
+            for j in range(3):
+                for k in range(3):
+                    trace += rotations[last, j, k] * rotations[i, j, k]
+        if trace <= least:
+            weights[last:i] = 1.0 / max(1, i - last)
+            last = i
+    return weights

@@ -6,10 +6,10 @@ import numpy as np
 
 from kinesphere.data import Array, Json, TopologicalModel
 from kinesphere.skeleton.discovery.clustering import merge_curve
-from kinesphere.skeleton.discovery.joint_markers import owners
-from kinesphere.skeleton.discovery.joint_tree import DOUBTFUL, Edge
+from kinesphere.skeleton.discovery.forest import DOUBTFUL, Edge
 from kinesphere.skeleton.discovery.names import DOUBTFUL_COUNT, Names
 from kinesphere.skeleton.discovery.partition import Partition
+from kinesphere.skeleton.discovery.steadiness import owners
 
 CURVE = 30
 """Most bodies in the merge curve."""
@@ -37,9 +37,11 @@ def account_of(
     limb_of
         Body → name of its limb in the model, of the tree that is solved.
     near
-        m, as `Rigidity.unlikeness` takes it.
+        m, as `Rigidity.unlikeness` takes it, at a person's size.
     """
     rigidity, forest, bodies = partition.rigidity, partition.forest, partition.bodies
+    unit = partition.unit
+    markers = {segment.name: segment.markers for segment in model.segments}
     confidence, owner = partition.confidence, owners(bodies, len(labels))
     curve = merge_curve(rigidity.unlikeness(near), rigidity.wander, CURVE)
     others: list[Json] = [
@@ -51,13 +53,13 @@ def account_of(
         "bodies_found": _count(partition),
         "count_confidence": _short(partition.clustering.count_confidence),
         "trees": len(forest.trees),
-        "within_bodies_mm": _mm(partition.usual),
+        "within_bodies_mm": _mm(unit * partition.usual),
         "names_confidence": _short(names.confidence),
         "names_from": names.account,
         "bodies": {
             limb: {
-                "markers": ", ".join(labels[m] for m in bodies[body]),
-                "within_mm": _mm(_rms(partition.belonging.own[bodies[body]])),
+                "markers": ", ".join(markers[limb]),
+                "within_mm": _mm(unit * _rms(partition.belonging.own[bodies[body]])),
                 "confidence": _short(float(confidence[bodies[body]].min())),
             }
             for body, limb in limb_of.items()
@@ -66,8 +68,8 @@ def account_of(
             joint.name: {
                 "parent": joint.parent,
                 "child": joint.child,
-                "cost_mm": _mm(forest_edge.cost),
-                "next_best_mm": _mm(forest_edge.next_best),
+                "cost_mm": _mm(unit * forest_edge.cost),
+                "next_best_mm": _mm(unit * forest_edge.next_best),
                 "confidence": _short(forest_edge.confidence),
                 "n_axes": joint.n_axes,
             }
@@ -83,7 +85,7 @@ def account_of(
         "loose": [labels[m] for m in partition.loose],
         "ghosts": list(ghosts),
         "other_trees": others,
-        "merge_curve_mm": {str(k): _mm(value) for k, value in curve.items()},
+        "merge_curve_mm": {str(k): _mm(unit * value) for k, value in curve.items()},
         "gaps": {str(k): _short(gap, 4) for k, gap in partition.clustering.gaps.items()},
     }
 

@@ -17,8 +17,6 @@ NEIGHBOUR = 2
 """Which neighbour sets a marker's scale: bodies have three markers or, with a joint's, two."""
 SEED = 2005
 """Of k-means' starts: the same input gives the same bodies."""
-LEAST_HIGH = 25
-"""Numbers of bodies looked at go at least up to this, else up to half the markers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +57,7 @@ def spectral(unlikeness: Array, bodies: int | None) -> Clustering:
     """
     n = len(unlikeness)
     found = spectrum(self_tuning_affinity(unlikeness, NEIGHBOUR))
-    high = min(max(LEAST_HIGH, n // 2), n - 1)
+    high = _most_bodies(n)
     drops = found.values[:high] - found.values[1 : high + 1]
     gaps = {k: float(drops[k - 1]) for k in range(2, high + 1)}
     k = bodies or found.eigengap(2, high)
@@ -81,7 +79,7 @@ def by_linkage(unlikeness: Array, bodies: int | None) -> Clustering:
     n = len(unlikeness)
     merges = linkage(_condensed(unlikeness), "average")
     heights = np.maximum(merges[:, 2], 1e-3 * np.median(merges[:, 2]) + 1e-12)
-    high = min(max(LEAST_HIGH, n // 2), n - 1)
+    high = _most_bodies(n)
     # before merger i there are n - i bodies
     gaps = {k: float(np.log(heights[n - k] / heights[n - k - 1])) for k in range(2, high + 1)}
     k = bodies or max(gaps, key=lambda count: gaps[count], default=1)
@@ -110,6 +108,11 @@ def merge_curve(unlikeness: Array, wander: Array, most: int) -> dict[int, float]
         within = within[np.isfinite(within)]
         curve[k] = float(np.sqrt(np.mean(within**2))) if len(within) else 0.0
     return curve
+
+
+def _most_bodies(n: int) -> int:
+    """Return up to how many bodies ``n`` markers may be: bodies have two or more on average."""
+    return min(max(2, n // 2), n - 1)
 
 
 def _condensed(unlikeness: Array) -> Array:

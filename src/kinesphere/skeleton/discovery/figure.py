@@ -10,7 +10,8 @@ from kinesphere.data import Array
 from kinesphere.geometry.algebraic_centres import score_centre, sphere_centre
 from kinesphere.geometry.rigid import RigidFit, into_frame, out_of_frame
 from kinesphere.skeleton.averages import mean_seen, median_seen
-from kinesphere.skeleton.discovery.joint_tree import JointCosts, Members
+from kinesphere.skeleton.discovery.joint_costs import JointCosts, Members
+from kinesphere.skeleton.topology import robust_deviations
 
 Point: TypeAlias = tuple[Any, ...]
 """A point by what it is: ("joint", a, b), ("far", body, neighbour), ("body", a) or ("amid", point,
@@ -36,6 +37,8 @@ class Figure:
     """Of each body, (n_sample, n_markers, 3) m."""
     joints: Mapping[frozenset[int], Array]
     """Two bodies that meet → (n_sample, 3) m."""
+    unit: float = 1.0
+    """How many times larger the subject is than the person that all lengths here are of."""
     known: dict[tuple[Point, Point], float] = field(default_factory=dict)
     """Lengths that were asked for: many readings of a tree ask for the same ones."""
 
@@ -121,22 +124,24 @@ def make_figure(
         middles=np.stack([mean_seen(cloud, axis=1) for cloud in clouds], axis=1),
         markers=clouds,
         joints=joints,
+        unit=costs.unit,
     )
 
 
 def joint_place(costs: JointCosts, a: Members, b: Members, over: Sequence[int] = ()) -> Array:
     """Return about where two bodies meet, (n_sample, 3) m; good to centimetres, for proportions.
 
-    Amid the markers over the joint, or midway between the nearest ones of both bodies, unless the
-    motion says better: by the common point of both poses (SCoRE), or by the spheres that one body's
-    markers are on in the other's pose.
+    Amid the markers over the joint or, where there is none, midway between the nearest ones of both
+    bodies, unless the motion says better: by the common point of both poses (SCoRE), or by the
+    spheres that one body's markers are on in the other's pose. Where neither has a pose, at the
+    marker that is steadiest with the other body: midway between knee and shin is no knee.
     """
     pose_a, pose_b = costs.pose(a), costs.pose(b)
     if pose_a is None and pose_b is not None:
         return joint_place(costs, b, a, over)
-    middle = mean_seen(costs.points[:, list(over) or list(_nearest(costs.points, a, b))], axis=1)
     if pose_a is None:
-        return middle
+        return mean_seen(costs.points[:, list(over) or [_steadiest(costs.points, a, b)]], axis=1)
+    middle = mean_seen(costs.points[:, list(over) or list(_nearest(costs.points, a, b))], axis=1)
     from_a = _seen_by(pose_a, middle)
     if not np.isfinite(from_a).all():
         return middle
@@ -165,6 +170,15 @@ def _nearest(points: Array, a: Members, b: Members) -> tuple[int, int]:
     """Return the two markers of two bodies that are nearest to each other."""
     ways = {(int(i), int(j)): usual_distance(points[:, i], points[:, j]) for i in a for j in b}
     return min(ways, key=lambda pair: (np.nan_to_num(ways[pair], nan=np.inf), pair))
+
+
+def _steadiest(points: Array, a: Members, b: Members) -> int:
+    """Return the marker of two bodies whose distances to the other body wander least."""
+    apart = np.linalg.norm(points[:, a, None] - points[:, None, b], axis=3)
+    wander = robust_deviations(apart.reshape(len(apart), -1)).reshape(len(a), len(b))
+    unsteady = {int(m): float(np.mean(row)) for m, row in zip(a, wander, strict=True)}
+    unsteady |= {int(m): float(np.mean(column)) for m, column in zip(b, wander.T, strict=True)}
+    return min(unsteady, key=lambda m: (unsteady[m], m))
 
 
 def usual_distance(a: Array, b: Array) -> float:

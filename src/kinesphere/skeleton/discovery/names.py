@@ -7,8 +7,8 @@ import numpy as np
 
 from kinesphere.data import Json
 from kinesphere.skeleton.discovery.figure import Figure
-from kinesphere.skeleton.discovery.joint_tree import DOUBTFUL, Forest
-from kinesphere.skeleton.discovery.person import Person, find_person
+from kinesphere.skeleton.discovery.forest import DOUBTFUL, Forest
+from kinesphere.skeleton.discovery.person import Person, confidence_of, find_person
 from kinesphere.skeleton.discovery.sides import Sides, find_sides
 
 SURE = 0.75
@@ -36,6 +36,8 @@ class Names:
     """Why there are no names, or not all; for a person."""
     cost: float = np.inf
     """Of the likeliest reading as a person, convincing or not; infinite where there is none."""
+    refused: str = ""
+    """Why these names are not given after all: the reading is good, the size is not a person's."""
 
     @property
     def given(self) -> bool:
@@ -55,13 +57,6 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
         return nobody
     person, confidence = found
     if not person.convincing:
-        if person.in_proportion:
-            doubt = (
-                "by its proportions the tree could be a person, but the size is not a person's "
-                f"(legs of someone of {person.stature:.2f} m): limbs are numbered; if it was a "
-                "person, the unit of length is wrong"
-            )
-            nobody = replace(nobody, doubt=doubt)
         return replace(nobody, cost=person.cost)
     account: dict[str, Json] = {
         "person": True,
@@ -70,21 +65,42 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
         "stature_m": round(person.stature, 2),
     }
     if confidence < SURE:
-        doubt = (
-            f"the tree can be read as a person in more than one way (confidence {confidence:.2f}); "
-            "limbs are numbered"
+        return replace(no_names(tree, _ambiguous(confidence)), account=account, cost=person.cost)
+    refused = ""
+    if not person.of_human_size:
+        refused = (
+            "by its proportions the tree could be a person, but the size is not a person's "
+            f"(legs of someone of {person.stature:.2f} m): limbs are numbered; if it was a "
+            "person, the unit of length is wrong"
         )
-        return replace(no_names(tree, doubt), account=account, cost=person.cost)
+    elif (sized := confidence_of(person.cost + person.size, person.nobody)) < confidence:
+        confidence = sized
+        refused = "" if sized >= SURE else _ambiguous(sized)
     sides = find_sides(figure, person)
     given = _torso(person)
     if sides is None:
         doubt = "nothing tells left from right; arms and legs are numbered"
-        return Names(numbered(given, tree), confidence, account, doubt, person.cost)
+        return Names(numbered(given, tree), confidence, account, doubt, person.cost, refused)
     account |= {"sides_confidence": round(sides.confidence, 3)}
     account |= {f"sides_from_{name}": round(score, 2) for name, score in sides.scores.items()}
     given |= _sided(person, sides)
     sure = confidence * sides.confidence
-    return Names(numbered(given, tree), sure, account, cost=person.cost)
+    return Names(numbered(given, tree), sure, account, cost=person.cost, refused=refused)
+
+
+def settled(names: Names, tree: Sequence[int]) -> Names:
+    """Return the names, or numbers where the size says that they are not to be given."""
+    if not names.refused:
+        return names
+    account = names.account | {"person": False}
+    return replace(no_names(tree, names.refused), account=account, cost=names.cost)
+
+
+def _ambiguous(confidence: float) -> str:
+    return (
+        f"the tree can be read as a person in more than one way (confidence {confidence:.2f}); "
+        "limbs are numbered"
+    )
 
 
 def shaken(names: Names, forest: Forest, count_confidence: float) -> Names:

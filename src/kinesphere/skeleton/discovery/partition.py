@@ -5,29 +5,27 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.skeleton.discovery.belonging import Belonging, measure_belonging
 from kinesphere.skeleton.discovery.chains import split_chains
 from kinesphere.skeleton.discovery.clustering import METHODS, Clustering
-from kinesphere.skeleton.discovery.joint_markers import (
-    Belonging,
-    measure_belonging,
-    resettle,
-    usual_wander,
-)
-from kinesphere.skeleton.discovery.joint_tree import (
-    Forest,
-    JointCosts,
-    Members,
-    contracted,
-    find_forest,
-)
+from kinesphere.skeleton.discovery.exchange import to_the_steadiest
+from kinesphere.skeleton.discovery.forest import Forest, contracted
+from kinesphere.skeleton.discovery.joint_costs import JointCosts, Members
+from kinesphere.skeleton.discovery.joint_tree import find_forest
+from kinesphere.skeleton.discovery.loners import resettle
+from kinesphere.skeleton.discovery.pieces import rejoined
 from kinesphere.skeleton.discovery.rigidity import Rigidity, measure_rigidity
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
+from kinesphere.skeleton.discovery.steadiness import usual_wander
 from kinesphere.skeleton.settings import SkeletonSettings
 
 
 @dataclass(frozen=True, eq=False)
 class Partition:
-    """Markers in bodies, bodies in trees. Markers are columns of the points it was found from."""
+    """Markers in bodies, bodies in trees. Markers are columns of the points it was found from.
+
+    Lengths are at a person's size: those of the subject over ``unit``.
+    """
 
     rigidity: Rigidity
     clustering: Clustering
@@ -40,6 +38,8 @@ class Partition:
     """m, median wander of a distance within a body."""
     shared: tuple[int, ...]
     """Markers at joints: nearly as steady in a neighbouring body as in their own."""
+    unit: float = 1.0
+    """How many times larger the subject is than the person that all lengths here are of."""
 
     @property
     def sizes(self) -> list[int]:
@@ -56,7 +56,6 @@ class Partition:
 
 def find_partition(
     points: Array,
-    share: float,
     settings: DiscoverySettings,
     limits: SkeletonSettings,
     costs: JointCosts,
@@ -66,12 +65,10 @@ def find_partition(
     Parameters
     ----------
     points : (n_sample, n, 3) m
-        Markers worth grouping, in frames spread over the motion.
-    share
-        Size of the subject as a share of a person's.
+        Markers worth grouping, in frames spread over the motion, at a person's size.
     settings
     limits
-        What counts as an outlier and as a line, for that size.
+        What counts as an outlier and as a line, of a person.
     costs
         Of joints between these markers; filled on the way.
 
@@ -80,8 +77,8 @@ def find_partition(
     BadRecording, DegenerateMotion
         As `kinesphere.skeleton.discovery.rigidity.measure_rigidity` does.
     """
-    rigidity = measure_rigidity(points)
-    clustering = _clustered(rigidity, share, settings)
+    rigidity = measure_rigidity(points, costs.unit)
+    clustering = _clustered(rigidity, settings)
     bodies = members_of(clustering.labels)
     loose: list[int] = []
     if settings.bodies is None:
@@ -90,6 +87,9 @@ def find_partition(
         bodies, loose = resettle(
             rigidity, members_of(labels), costs, settings.shared_ratio, settings.split_ratio
         )
+        bodies = to_the_steadiest(rigidity, bodies)
+        usual = usual_wander(rigidity.wander, bodies) or rigidity.noise
+        bodies = rejoined(bodies, rigidity.wander, usual, costs, settings.shared_ratio)
     forest = find_forest(costs, bodies)
     belonging = measure_belonging(
         rigidity, bodies, forest, limits.outlier_mm * 1e-3, limits.min_spread_mm * 1e-3
@@ -104,6 +104,7 @@ def find_partition(
         belonging=belonging,
         usual=usual,
         shared=tuple(map(int, belonging.shared(usual, settings.shared_ratio))),
+        unit=costs.unit,
     )
 
 
@@ -140,9 +141,9 @@ def members_of(labels: Members) -> list[Members]:
     return [np.flatnonzero(labels == body) for body in range(int(labels.max()) + 1)]
 
 
-def _clustered(rigidity: Rigidity, share: float, settings: DiscoverySettings) -> Clustering:
+def _clustered(rigidity: Rigidity, settings: DiscoverySettings) -> Clustering:
     n = len(rigidity.mean)
     if settings.bodies is None and rigidity.is_one_body:
         return Clustering(np.zeros(n, dtype=np.intp), {1: 1.0})
-    unlikeness = rigidity.unlikeness(settings.near_mm * 1e-3 * share)
+    unlikeness = rigidity.unlikeness(settings.near_mm * 1e-3)
     return METHODS[settings.method](unlikeness, settings.bodies)

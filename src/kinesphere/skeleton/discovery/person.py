@@ -20,8 +20,10 @@ MISSING = 4.0
 """Cost of a foot, an arm or the head that is not there: as much as two standard deviations."""
 EXTRA = 2.0
 """Cost of a body between trunk and upper arm: a shoulder blade of its own."""
-UNEXPLAINED = 2.0
-"""Cost of a body of the tree that is no limb of the person."""
+HELD, UNEXPLAINED = 2.0, 6.0
+"""Costs of a body that is no limb of the person: beyond the end of one, a racket; and elsewhere,
+what one person in twenty has (2 log 20). With 2 for both, dropouts of 5 % made a walker's legs hang
+from the trunk; with 4 to 8 for both, a racket was a hand."""
 LIKELY = 2.0
 """Most cost for each length that is judged, in squared standard deviations: of a person 1 at most
 is expected, of what is none far more."""
@@ -48,7 +50,8 @@ class Person:
     and, if there is one, hand."""
     head: int | None
     cost: float = np.inf
-    """Squared standard deviations of the proportions, and of what is missing or too much."""
+    """Squared standard deviations of the proportions, and of what is missing or too much; of a
+    person of any size."""
     lengths: int = 0
     """How many lengths were judged."""
     stature: float = np.nan
@@ -61,18 +64,18 @@ class Person:
 
     @property
     def size(self) -> float:
-        """Share of the cost that is owed to the stature alone."""
+        """What the stature alone costs."""
         return _off(self.stature, STATURE, SIZES) ** 2
 
     @property
     def convincing(self) -> bool:
-        """Whether proportions and size are those of a person."""
+        """Whether the proportions are those of a person, of any size."""
         return self.cost <= self.nobody
 
     @property
-    def in_proportion(self) -> bool:
-        """Whether the proportions are those of a person of some size."""
-        return self.cost - self.size <= self.nobody
+    def of_human_size(self) -> bool:
+        """Whether proportions and size together are those of a person."""
+        return self.cost + self.size <= self.nobody
 
     @property
     def hips_at(self) -> int:
@@ -84,7 +87,8 @@ def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | N
     """Return the likeliest reading of a tree as a person and its confidence 0…1.
 
     The confidence compares with the best reading in which any body is another limb, and with
-    seeing no person at all. None where no part of the tree can be two legs.
+    seeing no person at all. Size plays no part: a doll is a person. None where no part of the tree
+    can be two legs.
 
     Parameters
     ----------
@@ -100,8 +104,12 @@ def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | N
     best = readings[0]
     mine = _limbs(best)
     rival = next((p.cost for p in readings[1:] if _contradicts(_limbs(p), mine)), np.inf)
-    margin = min(rival, best.nobody) - best.cost
-    return best, float(1 / (1 + np.exp(-margin / SHARPNESS)))
+    return best, confidence_of(best.cost, min(rival, best.nobody))
+
+
+def confidence_of(cost: float, rival: float) -> float:
+    """Return 0…1 that a reading is right rather than one of another cost."""
+    return float(1 / (1 + np.exp(-(rival - cost) / SHARPNESS)))
 
 
 def _readings(figure: Figure, tree: Sequence[int]) -> Iterator[Person]:
@@ -176,10 +184,23 @@ def _judged(figure: Figure, person: Person, n_bodies: int) -> Person:
         off.append(_off(figure.length(hips, head), HEAD * stature, 0.2))
     missing += MISSING * (2 - len(arms)) + MISSING * (person.head is None)
     blades = sum(at != person.trunk for at, _ in person.arms)
-    missing += EXTRA * blades + UNEXPLAINED * (n_bodies - blades - len(_limbs(person)))
+    held = _held(figure, person)
+    unexplained = n_bodies - blades - len(_limbs(person)) - held
+    missing += EXTRA * blades + HELD * held + UNEXPLAINED * unexplained
     square = np.nan_to_num(np.array(off) ** 2, nan=np.inf)
-    judged = replace(person, lengths=len(off), stature=stature)
-    return replace(judged, cost=float(square.sum()) + missing + judged.size)
+    judged = replace(person, lengths=len(off), stature=stature * figure.unit)
+    return replace(judged, cost=float(square.sum()) + missing)
+
+
+def _held(figure: Figure, person: Person) -> int:
+    """Return how many bodies hang from the ends of a person's limbs."""
+    ends = [leg[-2:] for leg in person.legs] + [arm[-2:] for _, arm in person.arms]
+    return sum(_beyond(figure, last, before) for before, last in ends)
+
+
+def _beyond(figure: Figure, body: int, before: int) -> int:
+    others = [other for other in figure.beside[body] if other != before]
+    return len(others) + sum(_beyond(figure, other, body) for other in others)
 
 
 def _off(found: float, expected: float, deviation: float) -> float:

@@ -96,13 +96,15 @@ def longest_runs(seen: Mask, bridged: int = 0) -> NDArray[np.intp]:
     return longest
 
 
-def measure_rigidity(points: Array) -> Rigidity:
+def measure_rigidity(points: Array, unit: float = 1.0) -> Rigidity:
     """Return how steady all distances are.
 
     Parameters
     ----------
     points : (n_sample, n, 3) m
-        Markers that are seen; NaN where one is not.
+        Markers that are seen, at a person's size; NaN where one is not.
+    unit
+        How many times larger the subject is; for messages.
 
     Raises
     ------
@@ -127,7 +129,7 @@ def measure_rigidity(points: Array) -> Rigidity:
     if not len(steady):
         raise BadRecording("no two markers are ever seen together in ten frames")
     rigidity = Rigidity(points, found.mean, wander, float(np.median(steady)))
-    _check_motion(rigidity)
+    _check_motion(rigidity, unit)
     return rigidity
 
 
@@ -148,13 +150,14 @@ def resolution(points: Array, mean: Array) -> float:
     return float(np.nanmax([RESOLVED * usual, np.finfo(np.float32).eps * away]))
 
 
-def _check_motion(rigidity: Rigidity) -> None:
+def _check_motion(rigidity: Rigidity, unit: float) -> None:
     way = travels(rigidity.points)
     if way <= STILL * rigidity.noise or (rigidity.is_one_body and way < ALL_ONE):
         raise DegenerateMotion(
             "the markers hardly move relative to each other (distances wander by "
-            f"{rigidity.most * 1e3:.1f} mm, {rigidity.noise * 1e3:.1f} mm within bodies): nothing "
-            "tells one body from another; record a motion of every joint, or give a model"
+            f"{rigidity.most * unit * 1e3:.1f} mm, {rigidity.noise * unit * 1e3:.1f} mm within "
+            "bodies): nothing tells one body from another; record a motion of every joint, or give "
+            "a model"
         )
 
 

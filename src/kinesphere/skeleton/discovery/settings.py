@@ -10,7 +10,7 @@ from kinesphere.data import check_settings, setting
 class DiscoverySettings:
     """Settings of the stage ``discovery``; it runs only where no model says which marker is where.
 
-    Lengths are those of a person; for what is smaller (a hand) they shrink in proportion.
+    Lengths are those of a person; a smaller or larger subject is looked at as if it were as large.
     """
 
     method: Literal["spectral", "linkage"] = setting(

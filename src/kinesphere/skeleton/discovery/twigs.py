@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from kinesphere.skeleton.discovery.chains import widest
-from kinesphere.skeleton.discovery.joint_markers import OWN_POSE
 from kinesphere.skeleton.discovery.names import Names, numbered
 from kinesphere.skeleton.discovery.partition import Partition, merged
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
+from kinesphere.skeleton.discovery.steadiness import OWN_POSE
 from kinesphere.skeleton.settings import SkeletonSettings
 
 TORSO = ("pelvis", "trunk")

@@ -3,16 +3,12 @@
 import numpy as np
 import pytest
 
-from kinesphere.skeleton.discovery.joint_markers import (
-    Belonging,
-    measure_belonging,
-    owners,
-    resettle,
-    steadiness,
-    usual_wander,
-)
-from kinesphere.skeleton.discovery.joint_tree import JointCosts, find_forest
+from kinesphere.skeleton.discovery.belonging import Belonging, measure_belonging
+from kinesphere.skeleton.discovery.joint_costs import JointCosts
+from kinesphere.skeleton.discovery.joint_tree import find_forest
+from kinesphere.skeleton.discovery.loners import resettle
 from kinesphere.skeleton.discovery.rigidity import measure_rigidity
+from kinesphere.skeleton.discovery.steadiness import owners, steadiness, usual_wander
 
 RATIO, CHAIN = 2.0, 3.0
 
@@ -46,7 +42,7 @@ def leg(rng, n=400, noise=0.0005):
 
 def settled(points, bodies):
     rigidity = measure_rigidity(points)
-    kept, loose = resettle(rigidity, bodies, JointCosts(points, 1.0), RATIO, CHAIN)
+    kept, loose = resettle(rigidity, bodies, JointCosts(points), RATIO, CHAIN)
     return [members.tolist() for members in kept], loose
 
 
@@ -79,7 +75,7 @@ def test_cloth_belongs_to_nobody(rng, moving_bodies):
 def test_a_marker_over_a_joint_is_seen_to_be_at_it(rng):
     points = leg(rng)
     bodies = [np.arange(4), np.array([4, 5]), np.array([6, 7]), np.array([8, 9, 10])]
-    forest = find_forest(JointCosts(points, 1.0), bodies)
+    forest = find_forest(JointCosts(points), bodies)
     rigidity = measure_rigidity(points)
     belonging = measure_belonging(rigidity, bodies, forest, 0.003, 0.008)
     shared = belonging.shared(usual_wander(rigidity.wander, bodies), RATIO)

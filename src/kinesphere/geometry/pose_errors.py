@@ -1,0 +1,51 @@
+"""How uncertain a rigid fit is, and what its pose carries."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.geometry.rotations import hat
+
+Array = NDArray[np.float64]
+
+
+def pose_covariance(shape: Array, noise: Array) -> Array:
+    """Return how uncertain a rigid fit's pose is, from the noise of its points.
+
+    Parameters
+    ----------
+    shape : (n_points, 3) m
+        A point that is NaN tells nothing.
+    noise : (n_points,) m, standard deviation of each point in every direction.
+
+    Returns
+    -------
+    (6, 6)
+        Of a small turn (rad) about the shape's origin and a shift (m), both in the shape's frame;
+        the inverse of the weighted least-squares normal matrix.
+    """
+    known = np.isfinite(shape).all(axis=1)
+    shape, noise = shape[known], noise[known]
+    moved = np.concatenate([-hat(shape), np.broadcast_to(np.eye(3), (len(shape), 3, 3))], axis=2)
+    information = np.einsum("pki,p,pkj->ij", moved, 1 / noise**2, moved)
+    covariance: Array = np.linalg.pinv(information, hermitian=True, rcond=1e-12)
+    return covariance
+
+
+def point_covariance(pose: Array, points: Array) -> Array:
+    """Return the covariance that a pose's uncertainty gives to points it carries.
+
+    Parameters
+    ----------
+    pose : (6, 6)
+        As `pose_covariance` returns it.
+    points : (..., 3) m in the shape's frame.
+
+    Returns
+    -------
+    (..., 3, 3) m²
+    """
+    moved = np.concatenate(
+        [-hat(points), np.broadcast_to(np.eye(3), (*points.shape[:-1], 3, 3))], axis=-1
+    )
+    covariance: Array = moved @ pose @ np.swapaxes(moved, -1, -2)
+    return covariance

@@ -1,0 +1,105 @@
+"""What labelling found, as the step tells it: how sure, and where a person should look."""
+
+import numpy as np
+
+from kinesphere.data import Array, Json, Step, TopologicalModel, settings_as_json
+from kinesphere.labelling.labelled import Labelled, length_of
+from kinesphere.labelling.settings import LabellingSettings
+from kinesphere.labelling.template import template_of
+
+DOUBTFUL = 0.25
+"""Confidence below which a person should look."""
+LASTING = 0.5
+"""Share of the recording that a point without label must last..."""
+OTHERS = 0.1
+"""...and share of the labels that such points are, from which on the layout may be another one."""
+
+
+def mean_confidences(state: Labelled, n_labels: int) -> Array:
+    """Return the mean confidence of each label over the frames it is given in; NaN for none."""
+    total, frames = np.zeros(n_labels), np.zeros(n_labels)
+    for track, of, sure in zip(state.tracks, state.labels, state.confidence, strict=True):
+        if of >= 0:
+            n = sum(run.end - run.start for run in track)
+            total[of] += n * sure
+            frames[of] += n
+    return np.where(frames > 0, total / np.maximum(frames, 1), np.nan)
+
+
+def step_of(
+    model: TopologicalModel,
+    settings: LabellingSettings,
+    seeds: dict[str, int],
+    state: Labelled,
+    sure: Array,
+) -> Step:
+    """Return the step of a labelling; ``sure`` is the mean confidence of each label."""
+    known = recognisable_labels(model)
+    seen = np.isfinite(state.points[:, :, 0]).mean(axis=0)
+    table: dict[str, Json] = {
+        name: {
+            "confidence": None if np.isnan(sure[i]) else round(float(sure[i]), 3),
+            "share": round(float(seen[i]), 4),
+            "pieces": sum(
+                len(t) for t, of in zip(state.tracks, state.labels, strict=True) if of == i
+            ),
+        }
+        for i, name in enumerate(model.labels)
+        if name in known or seen[i] > 0
+    }
+    missing: list[Json] = [name for name in known if not seen[model.labels.index(name)] > 0]
+    doubtful: list[Json] = [
+        name for i, name in enumerate(model.labels) if seen[i] > 0 and sure[i] < DOUBTFUL
+    ]
+    loose = sum(of < 0 for of in state.labels)
+    lasting = sum(
+        of < 0 and length_of(state, k) >= LASTING * len(state.points)
+        for k, of in enumerate(state.labels)
+    )
+    warnings = [*state.notes]
+    given = len(known) - len(missing)
+    if missing and not given:
+        warnings.append(f"none of the {len(known)} labels of model {model.name} was given")
+    elif missing:
+        warnings.append(
+            f"{given} of {len(known)} labels of model {model.name} were given; not found or not "
+            f"told from others: {', '.join(map(str, missing))}"
+        )
+    if lasting > OTHERS * len(known) and given:
+        warnings.append(
+            f"{lasting} points are there most of the time and bear no label: if they sit on the "
+            f"body, it wears another layout than {model.name}, and labels beside them may be "
+            "those of neighbours"
+        )
+    if doubtful:
+        warnings.append(
+            f"labels to look at, another fits nearly as well: {', '.join(map(str, doubtful))}"
+        )
+    if state.cut:
+        warnings.append(
+            f"{state.cut} trajectories were cut where they stopped moving with their neighbours: "
+            "two markers may have been exchanged there"
+        )
+    return Step(
+        name="label",
+        settings={"model": model.name, **settings_as_json(settings)},
+        findings={
+            "labels_given": given,
+            "labels_known": len(known),
+            "kept": len(seeds),
+            "points_left_unlabelled": loose,
+            "pieces": len(state.tracks),
+            "cut": state.cut,
+            "fit_nats_a_pair": None if np.isnan(state.fit) else round(state.fit, 3),
+            "windows_s": [[round(a, 3), round(b, 3)] for a, b in state.windows_s],
+            "missing": missing,
+            "doubtful": doubtful,
+            "labels": table,
+        },
+        warnings=tuple(warnings),
+    )
+
+
+def recognisable_labels(model: TopologicalModel) -> tuple[str, ...]:
+    """Return the labels that the model's statistics know."""
+    return template_of(model).labels if model.statistics else ()

@@ -1,0 +1,48 @@
+"""A layout ready to be searched for, and what a search found."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array, TopologicalModel
+from kinesphere.labelling.blocks import Moves, block_moves, twins
+from kinesphere.labelling.problem import Labels, Problem
+from kinesphere.labelling.search import nearest_labels
+from kinesphere.labelling.template import Template, template_of
+
+
+@dataclass(frozen=True)
+class Layout:
+    """A template and what the search needs beside it."""
+
+    template: Template
+    moves: Moves
+    near: Labels
+    twin: NDArray[np.int64]
+    into: NDArray[np.int64]
+    """(n_template_labels,) index into the model's labels."""
+
+
+class Solved(NamedTuple):
+    """A problem, and the labels of least energy."""
+
+    problem: Problem
+    labels: Labels
+    energy: float
+    margins: Array
+    rivals: list[tuple[float, Labels]]
+
+
+def layout_of(model: TopologicalModel) -> Layout:
+    """Return what a model knows; BadModel if it has no statistics."""
+    template = template_of(model)
+    into = {label: i for i, label in enumerate(model.labels)}
+    return Layout(
+        template,
+        block_moves(model, template.labels, template.mean),
+        nearest_labels(template.mean),
+        twins(model, template.labels),
+        np.array([into[label] for label in template.labels], dtype=np.int64),
+    )

@@ -1,0 +1,77 @@
+"""The topological model that a tree of bodies is."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinesphere.data import JointModel, Landmark, Segment, TopologicalModel
+from kinesphere.geometry.rigid import RigidFit
+from kinesphere.skeleton.degrees import count_axes
+from kinesphere.skeleton.discovery.joint_costs import JointCosts
+from kinesphere.skeleton.discovery.partition import Partition
+from kinesphere.skeleton.discovery.steadiness import owners
+from kinesphere.skeleton.landmarks import STEADY
+from kinesphere.skeleton.naming import joint_name
+from kinesphere.skeleton.scale import size_share
+
+MODEL = "motion alone"
+"""Name of every model found so."""
+AT_THE_JOINT = 0.06
+"""m, how far a joint's centre may be from a marker over it: half a knee's width with the marker,
+and as much again."""
+
+
+def tree_model(
+    partition: Partition,
+    costs: JointCosts,
+    limb_of: dict[int, str],
+    labels: Sequence[str],
+    in_file: Sequence[str],
+) -> TopologicalModel:
+    """Return the model of one tree; ``limb_of`` has its bodies in order, the root first."""
+    at = {label: column for column, label in enumerate(in_file)}
+    owner = owners(partition.bodies, len(labels))
+    visits = {m: int(partition.belonging.neighbour[m]) for m in partition.shared}
+    segments = tuple(
+        Segment(
+            limb,
+            tuple(sorted((labels[m] for m in partition.bodies[body]), key=at.__getitem__)),
+            shared=tuple(labels[m] for m, next_one in visits.items() if next_one == body),
+        )
+        for body, limb in limb_of.items()
+    )
+    joints = []
+    for number, body in enumerate(list(limb_of)[1:], start=1):
+        edge = partition.forest.edge(body)
+        parent, child = limb_of[edge.a], limb_of[edge.b]
+        over = [m for m, there in visits.items() if {int(owner[m]), there} == {edge.a, edge.b}]
+        landmark = Landmark(
+            weights={labels[m]: 1 / len(over) for m in over},
+            spread=AT_THE_JOINT * size_share(costs.points * costs.unit),
+            source=STEADY,
+        )
+        joints.append(
+            JointModel(
+                joint_name(parent, child, number),
+                parent,
+                child,
+                n_axes=_axes(
+                    costs.pose(partition.bodies[edge.a]), costs.pose(partition.bodies[body])
+                ),
+                landmarks=(landmark,) if over else (),
+            )
+        )
+    return TopologicalModel(
+        name=MODEL,
+        segments=segments,
+        joints=tuple(joints),
+        root=next(iter(limb_of.values())),
+        required=tuple(label for segment in segments for label in segment.markers),
+        description="found from motion alone",
+    )
+
+
+def _axes(parent: RigidFit | None, child: RigidFit | None) -> int | None:
+    if parent is None or child is None:
+        return None
+    return count_axes(np.swapaxes(parent.rotations, 1, 2) @ child.rotations)
