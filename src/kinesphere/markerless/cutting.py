@@ -63,7 +63,7 @@ class _Small:
     def nearest(self, points: Array) -> NDArray[np.intp]:
         """Return the pixel nearest to each point, columns and rows, (2, n); −1 behind."""
         known = np.nan_to_num(np.rint(self.pixels(points)), nan=-1)
-        return np.clip(known, -1, 1e6).astype(np.intp).T
+        return np.asarray(np.clip(known, -1, 1e6).astype(np.intp).T)
 
     def drawn(self, points: Array, size: float) -> NDArray[np.bool_]:
         """Return the pixels that cubes of ``size`` m about points cover."""
