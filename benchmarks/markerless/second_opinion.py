@@ -129,7 +129,8 @@ def _apart(a: Array, b: Array) -> tuple[float, float, float]:
     if known.sum() < 3:
         return (float("nan"),) * 3
     off = a[known] - b[known]
-    r = float(np.corrcoef(a[known], b[known])[0, 1])
+    moving = a[known].std() > 0 and b[known].std() > 0
+    r = float(np.corrcoef(a[known], b[known])[0, 1]) if moving else float("nan")
     return float(np.sqrt((off**2).mean())), float(off.std()), r
 
 

@@ -37,14 +37,20 @@ MODULES = {
     "histograms": (
         "colour.py:count",
         "colour.py:blurred",
-        "colour.py:region_score",
+        "region.py:region_score",
         "colours.py:learn",
     ),
     "skin and normals": ("posing.py:",),
     "derivatives": ("jacobian.py:", "rim.py:image_directions"),
     "equations and steps": ("solver.py:", "pose.py:", "prediction.py:"),
-    "level set": ("levelset.py:", "~:{distanceTransform}", "~:<built-in method distanceTransform>"),
-    "votes and contours": ("votes.py:", "contour_fit.py:"),
+    "level set": (
+        "levelset.py:",
+        "region.py:log_ratios",
+        "colours.py:ratios",
+        "~:{distanceTransform}",
+        "~:<built-in method distanceTransform>",
+    ),
+    "votes and contours": ("votes.py:", "contour_fit.py:", "contours.py:"),
     "image to view, smaller images": ("views.py:", "remap", "resize", "evidence.py:"),
 }
 

@@ -12,6 +12,7 @@ pytest.importorskip("cv2")
 from kinesphere.data import Footage
 from kinesphere.markerless.checks import AGREE, check_scene
 from kinesphere.markerless.consistency import disagreement, find_culprit, find_lateness, sights
+from kinesphere.markerless.entrance import with_person_in_view
 from kinesphere.markerless.mixups import find_swap, person_size
 from kinesphere.synthetic.film import make_film
 
@@ -131,7 +132,7 @@ def test_a_scene_in_order_has_nothing_to_say(film):
 def test_a_late_camera_is_named_with_its_remedy(film):
     late = replace(film.scene, footage=Late(film.scene.footage, 2, 3), offsets=(0, 0, 5, 0))
     (warning,) = check_scene(late).warnings
-    assert "cam03 3 frames later" in warning
+    assert "cam03 seems to show everything 3 frames later than the others" in warning
     assert "offset = 8 in the [[camera]] of cam03" in warning
 
 
@@ -189,3 +190,25 @@ def test_empty_masks_are_said(film):
 
     warnings = check_scene(replace(film.scene, footage=Blind())).warnings
     assert "cam01 shows no silhouette in any frame looked at" in warnings[0]
+
+
+def test_a_room_that_is_empty_at_first_moves_the_start(film):
+    scene = replace(film.scene, footage=Gone(film.scene.footage, range(7)), first_frame=10)
+    found = with_person_in_view(scene)
+    assert found.start.frame == 7
+    (warning,) = found.history[-1].warnings
+    assert warning == ("frame 11 shows nobody in two cameras; the start was looked for in frame 18")
+
+
+def test_a_start_that_shows_the_person_or_is_given_stays(film):
+    assert with_person_in_view(film.scene) is film.scene
+    gone = replace(film.scene, footage=Gone(film.scene.footage, range(7)))
+    given = replace(gone, start=replace(gone.start, pose="given", values={"x": 0.0}))
+    assert with_person_in_view(given) is given
+    blind = replace(gone, has_masks=False)
+    assert with_person_in_view(blind) is blind
+
+
+def test_a_film_of_nobody_stays_as_it_is(film):
+    nobody = replace(film.scene, footage=Gone(film.scene.footage, range(24)))
+    assert with_person_in_view(nobody) is nobody

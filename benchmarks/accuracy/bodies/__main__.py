@@ -4,6 +4,7 @@ import argparse
 import json
 import math
 import sys
+from collections.abc import Callable
 from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
@@ -18,6 +19,12 @@ from benchmarks.accuracy.bodies.page import bars, page
 from benchmarks.accuracy.bodies.partitions import Row, rows
 from kinesphere import __version__
 
+RESULTS = ROOT / "benchmarks" / "results" / "skeleton.json"
+SECTIONS: dict[str, Callable[[], Any]] = {
+    "arm": arm_figures,
+    "functional": lambda: [asdict(row) for row in functional_rows()],
+    "hiding": lambda: [asdict(row) for row in hiding_rows()],
+}
 CREATURES = 6
 """Animals, hands, players and pairs of people."""
 
@@ -29,8 +36,15 @@ def main() -> int:
     parser.add_argument(
         "--without-peer", action="store_true", help="write the page without the peer's columns"
     )
+    parser.add_argument(
+        "--only",
+        choices=sorted(SECTIONS),
+        nargs="+",
+        help="renew these sections and keep the rest as it was measured last",
+    )
     arguments = parser.parse_args()
-    if not _peer() and not arguments.without_peer:
+    with_peer = not arguments.only or "functional" in arguments.only
+    if with_peer and not _peer() and not arguments.without_peer:
         print(
             "the peer biobuddy is not installed here, and the page would lose its columns: "
             "pip install -e .[bench], in an environment of its own, or --without-peer",
@@ -40,6 +54,18 @@ def main() -> int:
     if not folder().is_dir():
         print(f"no real recordings at {folder()}; set KINESPHERE_DATA", file=sys.stderr)
         return 2
+    if arguments.only:
+        found = json.loads(RESULTS.read_text(encoding="utf-8"))
+        found |= {"version": __version__, **{name: SECTIONS[name]() for name in arguments.only}}
+        if "functional" in arguments.only:
+            found["peer"] = _peer()
+        if absent := {"partitions", "changes", *SECTIONS, "cost"} - found.keys():
+            print(
+                f"{RESULTS} has no {', '.join(sorted(absent))} to keep: run without --only",
+                file=sys.stderr,
+            )
+            return 2
+        return _ended(found, None)
     partitions: list[Row] = []
     for row in rows(real_cases()):
         partitions.append(_told(row))
@@ -55,16 +81,20 @@ def main() -> int:
     cmu = [case for case in real_cases() if case.name.startswith("cmu41")]
     changes = [asdict(row) for row in change_rows(lawful, cmu)]
     costs = cost_rows()
-    found: dict[str, Any] = {
+    found = {
         "version": __version__,
         "peer": _peer(),
         "partitions": [asdict(row) for row in partitions],
         "changes": changes,
-        "arm": arm_figures(),
-        "functional": [asdict(row) for row in functional_rows()],
-        "hiding": [asdict(row) for row in hiding_rows()],
+        **{name: measure() for name, measure in SECTIONS.items()},
         "cost": [asdict(row) for row in costs],
     }
+    return _ended(found, costs)
+
+
+def _ended(found: dict[str, Any], costs: list[Cost] | None) -> int:
+    """Write what was found; return 1 if a bar is missed, and say which."""
+    found = _plain(found)
     _write(found, costs)
     missed = [bar for bar in bars(found) if not bar.met]
     for bar in missed:
@@ -72,15 +102,14 @@ def main() -> int:
     return 1 if missed else 0
 
 
-def _write(found: dict[str, Any], costs: list[Cost]) -> None:
+def _write(found: dict[str, Any], costs: list[Cost] | None) -> None:
     text = page(found)
     print(text)
-    results, documents = ROOT / "benchmarks" / "results", ROOT / "docs"
+    documents = ROOT / "docs"
     (documents / "results" / "skeleton.md").write_text(text, encoding="utf-8")
-    (documents / "images" / "skeleton-cost.svg").write_text(plot(costs), encoding="utf-8")
-    (results / "skeleton.json").write_text(
-        json.dumps(_plain(found), indent=1, allow_nan=False) + "\n", encoding="utf-8"
-    )
+    if costs is not None:
+        (documents / "images" / "skeleton-cost.svg").write_text(plot(costs), encoding="utf-8")
+    RESULTS.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def _told(row: Row) -> Row:

@@ -186,12 +186,14 @@ def _functional(rows: Sequence[dict[str, Any]], peer: str) -> str:
         "is from the motion. *Halves* are the first and the second half of the trial, in which "
         "people make different movements (a hip 77° in one, 53° in the other); *eighths* every "
         "second eighth against the rest. *Told* is the rms difference that the uncertainties in "
-        "`skeleton.json` lead to expect between the halves. Centres of knees across their axis; *along* it they are "
-        f"open. The peer is {whose}: SCoRE and SARA on the same poses, in the same run. "
+        "`skeleton.json` lead to expect between the halves. Centres of knees across their axis; "
+        f"*along* it they are open. The peer is {whose}: SCoRE and SARA on the same poses, in "
+        "the same run. "
         "*SCoRE* compares its centre with the plain one of this project; the time ratio is the "
         "peer's processor time over that of the plain one.\n",
-        "| joint | centre | halves | told | along | axis, halves | told | eighths | axis, eighths | peer, halves "
-        "| peer axis, halves | to the peer | SCoRE | axis to the peer | time ratio |",
+        "| joint | centre | halves | told | along | axis, halves | told | eighths | axis, eighths "
+        "| peer, halves | peer axis, halves | to the peer | SCoRE | axis to the peer "
+        "| time ratio |",
         "|---|---|" + "---:|" * 13,
     ]
     for row in rows:

@@ -7,6 +7,8 @@ sight comes back where its distances to its steadiest neighbours say it is, not 
 seen. Distances are measured on, as long as they fit.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
@@ -21,6 +23,8 @@ SMOOTH = 1.0
 """How much of a new step enters the one that is expected next: at 120 Hz the last one is best."""
 BACK = 2.5
 """Mean square deviation of distances up to which a point is a marker that comes back."""
+CLEAR = 3.0
+"""How much worse it must fit every other marker that is out of sight."""
 DENIED = 9.0
 """Mean square deviation from which on a label may be exchanged for one that fits: a movement not
 made before deviates as much, but fits no other label."""
@@ -32,6 +36,8 @@ LEARNS = 4.0
 """Mean square deviation up to which a marker's distances are measured on."""
 RENEWED_S = 1.0
 """s between two measurements of all distances."""
+STEADY = 0.03
+"""m, most that a distance may vary for a marker to be held to it."""
 NEIGHBOURS = 6
 """Steadiest neighbours that a marker is held to."""
 
@@ -152,13 +158,24 @@ class LiveLabels:
         gone = np.flatnonzero(np.isnan(here[:, 0]))
         if not len(loose) or not len(gone):
             return
-        cost = np.empty((len(gone), len(loose)))
-        self._costs(points[loose], gone, here, cost)
+        for k, label in self._returning(points[loose], gone, here):
+            given[loose[k]] = label
+            here[label] = points[loose[k]]
+
+    def _returning(
+        self, points: Array, gone: NDArray[np.intp], here: Array
+    ) -> list[tuple[int, int]]:
+        """Return which points are which of the markers out of sight, the clear cases only."""
+        cost = np.empty((len(gone), len(points)))
+        self._costs(points, gone, here, cost)
         rows, columns = linear_sum_assignment(cost)
+        found = []
         for r, c in zip(rows, columns, strict=True):
-            if cost[r, c] <= BACK:
-                given[loose[c]] = gone[r]
-                here[gone[r]] = points[loose[c]]
+            # of two that are out of sight, the nearer one would take the other's place
+            others = np.delete(cost[:, c], r).min(initial=FAR)
+            if cost[r, c] <= BACK and others >= min(cost[r, c] + CLEAR, FAR):
+                found.append((int(c), int(gone[r])))
+        return found
 
     def _learn(self, here: Array, fit: Array) -> None:
         """Measure distances on, of markers that keep theirs."""
@@ -174,6 +191,9 @@ class LiveLabels:
         self._ranked = np.argsort(
             np.where(np.isnan(self.own.deviation), np.inf, self.own.deviation), axis=1
         )
+        # distances that vary much fit anything
+        loose = self.own.deviation > STEADY
+        self.own = replace(self.own, deviation=np.where(loose, np.nan, self.own.deviation))
 
 
 @kernel

@@ -78,6 +78,7 @@ def check_scene(scene: Scene) -> Step:
             f"the person seems {size:.2g} m large; the calibration's unit is wrong, or what moves "
             "is no person"
         )
+        return _step(found, *warnings)  # whatever else seems wrong comes of it
     swap = find_swap(scene.cameras, some)
     if swap is not None and swap.mended > _UNDONE:
         one, other = scene.cameras[swap.first].name, scene.cameras[swap.second].name
@@ -86,7 +87,7 @@ def check_scene(scene: Scene) -> Step:
             f"the images of {one} and {other} seem to be exchanged: the other way round "
             f"{swap.mended:.0%} of the cameras' disagreement would go"
         )
-        return _step(found, *warnings)  # whatever else seems wrong comes of it
+        return _step(found, *warnings)
     told, warning = _lateness(scene)
     found |= told
     warnings += warning
@@ -101,11 +102,15 @@ def check_scene(scene: Scene) -> Step:
 
 
 def silhouettes(scene: Scene, frame: Frame) -> tuple[Mask | None, ...]:
-    """Return the person's silhouette in each camera, from masks or plates; None without either."""
+    """Return the person's silhouette in each camera, from masks or plates.
+
+    None without either, and where nobody is.
+    """
     found: list[Mask | None] = []
     for mask, image, plate in zip(frame.masks, frame.images, scene.plates, strict=True):
         if mask is not None:
-            found.append(np.asarray(largest_piece(mask.astype(np.uint8) * 255) > 0))
+            person = np.asarray(largest_piece(mask.astype(np.uint8) * 255) > 0)
+            found.append(person if person.any() else None)
         elif image is not None and plate is not None:
             differs = np.asarray(plate_difference(image, plate) > 0)
             found.append(differs if differs.mean() > _SPECK else None)
@@ -130,18 +135,19 @@ def _lateness(scene: Scene) -> tuple[dict[str, object], list[str]]:
         "late_frames": late[0].frames,
         "mended": late[0].mended,
     }
-    shifts = " or ".join(
-        f"{name} {abs(each.frames)} {'frame' if abs(each.frames) == 1 else 'frames'} "
+    shifts = [
+        f"{abs(each.frames)} {'frame' if abs(each.frames) == 1 else 'frames'} "
         f"{'later' if each.frames > 0 else 'earlier'}"
-        for name, each in zip(names, late, strict=True)
-    )
+        for each in late
+    ]
+    others = (f", or {n} {shift}" for n, shift in zip(names[1:], shifts[1:], strict=True))
     offsets = " or ".join(
         f"offset = {scene.offsets[each.camera] + each.frames} in the [[camera]] of {name}"
         for name, each in zip(names, late, strict=True)
     )
     return told, [
-        f"one camera seems to be out of time, showing everything {shifts} than the others "
-        f"({late[0].mended:.0%} of their disagreement would go): try {offsets}"
+        f"{names[0]} seems to show everything {shifts[0]} than the others{''.join(others)} "
+        f"({late[0].mended:.0%} of their disagreement would go); try {offsets}"
     ]
 
 

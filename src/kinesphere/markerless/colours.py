@@ -14,11 +14,10 @@ from kinesphere.markerless.kernels.colour import (
     colour_samples_kernel,
     count_far_kernel,
     count_lines_kernel,
-    log_ratios_kernel,
-    region_score_kernel,
 )
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.kernels.lines import SAMPLES
+from kinesphere.markerless.kernels.region import log_ratios_kernel, region_score_kernel
 from kinesphere.markerless.rim import Parts, Rim, around
 
 SIDE = 16

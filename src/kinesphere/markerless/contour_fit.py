@@ -7,33 +7,17 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array
 from kinesphere.geometry.twists import incidence
+from kinesphere.markerless.contours import Contour, contour_of, matches
 from kinesphere.markerless.fit import Eye, Fitter
 from kinesphere.markerless.kernels.contour import NOWHERE
-from kinesphere.markerless.kernels.levelset import contour_kernel
-from kinesphere.markerless.kernels.votes import vote_kernel
 from kinesphere.markerless.levelset import Silhouette, cropped, from_mask, segment
 from kinesphere.markerless.pose import Pose, Posed, posed
 from kinesphere.markerless.rim import Rim, around, derivatives, image_directions
 from kinesphere.markerless.solver import Normals, Prior, solve_step
-from kinesphere.markerless.views import View
 
-AGREE = 0.5
-"""Least cosine between the normals of contour and rim."""
-REJECT = 3.0
-"""Matches farther apart than so many times the median are left out."""
 _DAMPING = 1e-3
 _DRAWN = 3
 """Steps for which one drawing of what hides what must do."""
-
-
-@dataclass(frozen=True, eq=False)
-class Contour:
-    """The person's outline in one view."""
-
-    points: Array
-    """(n, 2) px."""
-    normals: Array
-    """(n, 2) outward."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +75,7 @@ class ContourFitter:
                 known = eye.evidence.ratios(parts, s.margin) if by_limb else None
                 found = segment(picture, model, s, self.silhouettes[i], shape, known, scale)
             self.silhouettes[i] = found
-            contours.append(None if found is None else _contour(found, eye.canvas.view, 3))
+            contours.append(None if found is None else contour_of(found, eye.canvas.view, 3))
         return contours
 
     def _step(
@@ -126,60 +110,8 @@ class ContourFitter:
         return solve_step(body.chain, pose, equations, priors, _DAMPING)
 
 
-def matches(contour: Contour, rim: Rim, radius: float) -> tuple[NDArray[np.intp], Array, Array]:
-    """Match a contour to the outer rim both ways.
-
-    Inward, each contour point goes to the rim point of the limb it is voted to; outward, each rim
-    point to its nearest contour point.
-
-    Returns
-    -------
-    which, targets, normals : (n,), (n, 2), (n, 2)
-        Rim points, and the contour points and normals they belong to.
-    """
-    outer = np.flatnonzero(rim.parts[:, 1] == NOWHERE)
-    pixels, normals = rim.pixels[outer], rim.normals[outer]
-    limbs = np.ascontiguousarray(rim.parts[outer, 0])
-    inward, far_in = _voted(contour.points, contour.normals, pixels, normals, limbs, radius)
-    one = np.zeros(len(contour.points), dtype=np.int32)
-    outward, far_out = _voted(pixels, normals, contour.points, contour.normals, one, radius)
-    i, o = np.flatnonzero(inward >= 0), np.flatnonzero(outward >= 0)
-    which = np.concatenate([outer[inward[i]], outer[o]])
-    target = np.concatenate([i, outward[o]])
-    far = np.concatenate([far_in[i], far_out[o]])
-    if len(far):
-        kept = far <= max(REJECT * float(np.median(far)), 2.0)
-        which, target = which[kept], target[kept]
-    return which, contour.points[target], contour.normals[target]
-
-
-def _voted(
-    points: Array,
-    normals: Array,
-    rim_pixels: Array,
-    rim_normals: Array,
-    limbs: NDArray[np.int32],
-    radius: float,
-) -> tuple[NDArray[np.int32], Array]:
-    match, far = np.full(len(points), -1, dtype=np.int32), np.full(len(points), np.nan)
-    if len(limbs):
-        vote_kernel(points, normals, rim_pixels, rim_normals, limbs, radius, AGREE, match, far)
-    return match, far
-
-
 def _part(rim: Rim, which: NDArray[np.intp]) -> Rim:
     return Rim(*(array[which] for array in vars(rim).values()))
-
-
-def _contour(silhouette: Silhouette, view: View, spacing: int) -> Contour:
-    h, w = silhouette.phi.shape
-    taken = np.zeros((h // spacing + 1, w // spacing + 1), dtype=bool)
-    points, normals = np.empty((taken.size, 2)), np.empty((taken.size, 2))
-    n = contour_kernel(silhouette.phi, spacing, points, normals, taken)
-    points = points[:n] + np.array([silhouette.left, silhouette.top])
-    # where the person leaves the image the silhouette ends, but not the person
-    inside = ((points > 4) & (points < [view.width - 5, view.height - 5])).all(axis=1)
-    return Contour(points[inside], normals[:n][inside])
 
 
 def _add_image(

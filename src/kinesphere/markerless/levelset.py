@@ -140,7 +140,7 @@ def segment(
 
 def _smaller(image: Any, scale: int) -> Any:
     if scale == 1:
-        return image.copy()
+        return image
     h, w = image.shape[:2]
     size = max(2, round(w / scale)), max(2, round(h / scale))
     return np.ascontiguousarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA))

@@ -5,9 +5,9 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array, Mask
 from kinesphere.markerless.evidence import MOST, STRIDE, Levels
-from kinesphere.markerless.kernels.colour import mask_score_kernel
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.kernels.lines import SAMPLES, mask_samples_kernel
+from kinesphere.markerless.kernels.region import mask_score_kernel
 from kinesphere.markerless.rim import Parts, Rim, around
 
 _NOTHING = np.zeros((2, 2), dtype=np.uint8)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.markerless.chain import BALL, SLIDE, Chain
+from kinesphere.markerless.chain import SLIDE, Chain
 from kinesphere.markerless.pose import Pose, difference, limited, moved
 
 STEP = 0.4
@@ -56,7 +56,7 @@ def solve_step(
     """
     h, g = equations.h.copy(), equations.g.copy()
     diagonal = np.arange(chain.n_dofs)
-    h[diagonal, diagonal] += damping * _alike(chain, h[diagonal, diagonal])
+    h[diagonal, diagonal] *= 1 + damping
     for prior in priors:
         weight = 1.0 / prior.spread**2
         h[diagonal, diagonal] += weight
@@ -67,18 +67,6 @@ def solve_step(
     reach = np.where(chain.dof_kinds == SLIDE, STEP, STEP)
     step = step * min(1.0, float((reach / np.maximum(np.abs(step), 1e-12)).min()))
     return limited(chain, moved(chain, pose, step)), float(np.abs(step).max())
-
-
-def _alike(chain: Chain, diagonal: Array) -> Array:
-    """Return a diagonal with the root's shifts and turns alike, each by their mean.
-
-    They are along the world's axes, and which these are shall be nothing to the step.
-    """
-    out = diagonal.copy()
-    for kind in (SLIDE, BALL):
-        root = (chain.dof_kinds == kind) & (chain.dof_limbs == 0)
-        out[root] = diagonal[root].mean()
-    return out
 
 
 def _held_solution(chain: Chain, pose: Pose, h: Array, g: Array) -> Array:

@@ -14,6 +14,7 @@ from kinesphere.markerless import (
     with_first_frame,
 )
 from kinesphere.markerless.checks import check_scene
+from kinesphere.markerless.entrance import with_person_in_view
 from kinesphere.markerless.rig import standing_as_bundled
 from kinesphere.markerless.tracker import track
 from kinesphere.normalization import Facing
@@ -82,6 +83,7 @@ def solve_scene(
     riding = None if settings.surface.body == BUNDLED else body_for(settings.surface)
     clock = Clock(progress, len(TRACKING_STAGES))
     with clock.stage("scene checks"):
+        scene = with_person_in_view(scene)
         scene = replace(scene, history=(*scene.history, check_scene(scene)))
     if notice is not None:
         for warning in (w for step in scene.history for w in step.warnings):

@@ -14,6 +14,11 @@ _ROOM = 0.08
 _FLESH = 0.1
 """m around joints and limbs' ends in which the body's surface lies."""
 
+_SKINS = 12
+"""Frames whose skin is looked at, too."""
+_SPARSE = 5
+"""Of its vertices every so many."""
+
 
 @dataclass(frozen=True, eq=False)
 class Panel:
@@ -63,7 +68,11 @@ def panels_for(
     joints = np.concatenate([tracked.origins[i], ends]).reshape(-1, 3)
     joints = joints[np.isfinite(joints).all(axis=1)]
     around = _FLESH * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    points = (joints[:, None] + around).reshape(-1, 3)
+    # a head that is one with the trunk has no joint: in some frames the skin itself is looked at
+    some = i[tracked.solved[i]]
+    some = some[:: max(1, -(-len(some) // _SKINS))]
+    skins = [tracked.body.vertices(tracked.parameters[k])[::_SPARSE] for k in some]
+    points = np.concatenate([(joints[:, None] + around).reshape(-1, 3), *skins])
     found = []
     for camera in scene.cameras:
         left, top, right, bottom = _box(camera, points)

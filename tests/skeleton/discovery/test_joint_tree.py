@@ -183,3 +183,36 @@ def test_two_that_stand_about_are_not_joined_by_standing(rng):
     points += rng.normal(scale=NOISE, size=points.shape)
     forest = find_forest(JointCosts(points), [np.arange(4), np.arange(4, 8)])
     assert len(forest.trees) == 2
+
+
+class Told:
+    """Joint costs that are given."""
+
+    def __init__(self, costs):
+        self.costs = costs
+
+    def between(self, a, b):
+        return self.costs.get((int(a[0]), int(b[0])), np.inf)
+
+
+@pytest.mark.parametrize(
+    ("usual", "last", "trees"),
+    [(0.01, 0.05, 1), (0.01, 0.07, 2), (0.04, 0.11, 1), (0.04, 0.13, 2)],  # m
+)
+def test_a_joint_that_costs_far_more_than_joints_do_is_none(usual, last, trees):
+    """More than 60 mm, and more than three times what the cheaper ones cost: noisy data."""
+    costs = Told({(0, 1): usual, (1, 2): usual, (2, 3): last})
+    assert len(find_forest(costs, [np.array([i]) for i in range(4)]).trees) == trees
+
+
+def test_two_that_go_the_same_way_are_not_one(rng, moving_bodies):
+    """Each turns and sways by a decimetre for itself while both walk three metres."""
+    points, of = moving_bodies(rng, (4, 4), apart=0.0, noise=NOISE, n_frames=FRAMES)
+    for k in range(2):
+        points[:, of == k] -= points[:, of == k].mean(axis=1, keepdims=True)
+    times = np.linspace(0, 1, FRAMES)[:, None]
+    for k in range(2):
+        sway = 0.1 * np.sin(20 * times + rng.uniform(0, 6, size=3) + 3 * k * times)
+        points[:, of == k] += (3.0 * times * [1, 0, 0] + sway + 0.5 * k)[:, None]
+    forest = find_forest(JointCosts(points), [np.arange(4), np.arange(4, 8)])
+    assert len(forest.trees) == 2

@@ -17,7 +17,8 @@ FLOOR = 2e-5
 
 
 @kernel
-def _bin(level: Image, row: int, col: int, bins: Bins) -> int:
+def bin_of(level: Image, row: int, col: int, bins: Bins) -> int:
+    """Return the histogram bin of a pixel's colour."""
     return int(
         bins[
             ((level[row, col, 0] >> 3) << 10)
@@ -80,50 +81,13 @@ def colour_samples_kernel(
             row = int(np.rint((pixels[i, 1] + r * normals[i, 1] + 0.5) / factor - 0.5))
             if not (0 <= row < height and 0 <= col < width):
                 continue
-            b = _bin(level, row, col, bins)
+            b = bin_of(level, row, col, bins)
             inside = limbs[own, b] + FLOOR
             if beyond == NOWHERE:
                 outside = local * near[own, b] + (1.0 - local) * far[b] + FLOOR
             else:
                 outside = limbs[beyond, b] + FLOOR
             probabilities[i, j] = inside / (inside + outside)
-
-
-@kernel
-def log_ratios_kernel(
-    owners: Ints,
-    level: Image,
-    bins: Bins,
-    groups: Ints,
-    limbs: NDArray[np.float32],
-    near: NDArray[np.float32],
-    far: NDArray[np.float32],
-    local: float,
-    ratios: NDArray[np.float32],
-) -> None:
-    """Write how much likelier each pixel is its limb's than the background's, in nats.
-
-    Parameters
-    ----------
-    owners : (height, width)
-        The limb a pixel is asked for; NOWHERE for none.
-    level, bins, groups, limbs, near, far, local
-        As in `colour_samples_kernel`.
-    ratios : (height, width)
-        Written; 0 where no limb is asked for.
-    """
-    table = np.empty(limbs.shape, dtype=np.float32)
-    for g in range(limbs.shape[0]):
-        for b in range(limbs.shape[1]):
-            outside = local * near[g, b] + (1.0 - local) * far[b] + FLOOR
-            table[g, b] = np.log((limbs[g, b] + FLOOR) / outside)
-    height, width = owners.shape
-    for row in range(height):
-        for col in range(width):
-            limb = owners[row, col]
-            ratios[row, col] = 0.0
-            if limb != NOWHERE:
-                ratios[row, col] = table[groups[limb], _bin(level, row, col, bins)]
 
 
 @kernel
@@ -170,11 +134,11 @@ def count_lines_kernel(
                     if seen == NOWHERE or not near_limbs[own, seen]:
                         break
                     # counted for what is seen there: the lines of a sleeve may reach the hand
-                    limbs[groups[seen], _bin(level, row, col, bins)] += 1.0
+                    limbs[groups[seen], bin_of(level, row, col, bins)] += 1.0
                 else:
                     if seen != NOWHERE:
                         break
-                    near[group, _bin(level, row, col, bins)] += 1.0
+                    near[group, bin_of(level, row, col, bins)] += 1.0
 
 
 @kernel
@@ -186,7 +150,7 @@ def count_far_kernel(
     for row in range(0, height, stride):
         for col in range(0, width, stride):
             if parts[row, col] == NOWHERE:
-                far[_bin(level, row, col, bins)] += 1.0
+                far[bin_of(level, row, col, bins)] += 1.0
 
 
 @kernel
@@ -214,51 +178,3 @@ def blurred_kernel(counts: NDArray[np.float32], side: int, smooth: NDArray[np.fl
             smooth[b] = 0.5 * now[b] + 0.25 * (low + high)
         now = smooth.copy()
         stride *= side
-
-
-@kernel
-def region_score_kernel(
-    parts: Ints,
-    level: Image,
-    bins: Bins,
-    groups: Ints,
-    limbs: NDArray[np.float32],
-    far: NDArray[np.float32],
-    stride: int,
-    most: float,
-    scores: Array,
-    counts: Array,
-) -> None:
-    """Sum, over the pixels each limb covers, how much likelier they are its than background.
-
-    Parameters
-    ----------
-    most
-        The most one pixel may say for or against, in nats.
-    scores, counts : (n_limbs,)
-        Added to.
-    """
-    height, width = parts.shape
-    for row in range(0, height, stride):
-        for col in range(0, width, stride):
-            limb = parts[row, col]
-            if limb != NOWHERE:
-                b = _bin(level, row, col, bins)
-                ratio = np.log((limbs[groups[limb], b] + FLOOR) / (far[b] + FLOOR))
-                scores[limb] += min(max(ratio, -most), most)
-                counts[limb] += 1.0
-
-
-@kernel
-def mask_score_kernel(
-    parts: Ints, level: Image, stride: int, most: float, scores: Array, counts: Array
-) -> None:
-    """Sum the same from an image of how likely each pixel is the person's, 0 to 255."""
-    height, width = parts.shape
-    for row in range(0, height, stride):
-        for col in range(0, width, stride):
-            limb = parts[row, col]
-            if limb != NOWHERE:
-                p = 0.02 + 0.96 * level[row, col] / 255.0
-                scores[limb] += min(max(np.log(p / (1.0 - p)), -most), most)
-                counts[limb] += 1.0

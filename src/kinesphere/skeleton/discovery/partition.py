@@ -13,7 +13,6 @@ from kinesphere.skeleton.discovery.forest import Forest, contracted
 from kinesphere.skeleton.discovery.joint_costs import JointCosts, Members
 from kinesphere.skeleton.discovery.joint_tree import find_forest
 from kinesphere.skeleton.discovery.loners import resettle
-from kinesphere.skeleton.discovery.pieces import rejoined
 from kinesphere.skeleton.discovery.rigidity import Rigidity, measure_rigidity
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.discovery.steadiness import usual_wander
@@ -88,8 +87,6 @@ def find_partition(
             rigidity, members_of(labels), costs, settings.shared_ratio, settings.split_ratio
         )
         bodies = to_the_steadiest(rigidity, bodies)
-        usual = usual_wander(rigidity.wander, bodies) or rigidity.noise
-        bodies = rejoined(bodies, rigidity.wander, usual, costs, settings.shared_ratio)
     forest = find_forest(costs, bodies)
     belonging = measure_belonging(
         rigidity, bodies, forest, limits.outlier_mm * 1e-3, limits.min_spread_mm * 1e-3

@@ -47,6 +47,8 @@ class DiscoverySettings:
         unit="mm",
         low=1.0,
         high=10_000.0,
+        source="38 to 75 mm give the same bodies on seventeen cases; at 150 mm a recording of 41 "
+        "markers loses limbs",
     )
     ghost_s: float = setting(
         0.5,
