@@ -35,6 +35,15 @@ def test_importing_is_quick_and_fetches_nothing_heavy():
     assert told[1:] == []
 
 
+def test_what_no_extra_brought_is_not_needed_to_import_and_to_ask_for_help():
+    code = (
+        "import sys; sys.modules.update(dict.fromkeys(['cv2', 'av', 'viser']));"
+        "import kinesphere as ks; [getattr(ks, name) for name in dir(ks)];"
+        "import kinesphere.cli.main; print(ks.solve.__name__)"
+    )
+    assert python(code) == "solve"
+
+
 def test_importing_everything_touches_nothing(tmp_path):
     home = tmp_path / "home"
     home.mkdir()

@@ -14,15 +14,12 @@ from kinesphere.markerless.consistency import (
 )
 from kinesphere.markerless.mixups import find_swap, person_size
 from kinesphere.markerless.silhouettes import largest_piece, plate_difference
+from kinesphere.markerless.tracked import CHECKS, CULPRIT
 
 AGREE = 0.008
 """Of the image's diagonal: cameras whose silhouettes contradict each other by more are badly
 calibrated. A camera turned by half a degree gives 0.006, perfect ones 0.001, a good calibration of
 real footage 0.005."""
-CHECKS = "scene checks"
-"""What the step is called."""
-CULPRIT = "wrong_camera"
-"""Where the step names the camera that does not fit the others."""
 _MENDS = 0.4
 """Share of the disagreement that a shift in time must mend to be believed."""
 _UNDONE = 0.6

@@ -19,8 +19,7 @@ from kinesphere.data import (
 )
 from kinesphere.errors import DegenerateMotion
 from kinesphere.geometry.range_of_motion import range_of_motion
-from kinesphere.markerless.checks import CHECKS, CULPRIT
-from kinesphere.markerless.tracked import TrackedMotion
+from kinesphere.markerless.tracked import CHECKS, CULPRIT, TrackedMotion
 
 _EMPTY = np.empty((0, 3))
 _ODD = 0.7

@@ -8,6 +8,11 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array, History, Mask, Surface
 
+CHECKS = "scene checks"
+"""What the step is called that tells whether the cameras agree."""
+CULPRIT = "wrong_camera"
+"""Where that step names the camera that does not fit the others."""
+
 
 class PosedBody(Protocol):
     """A body model as drawing and reports need it."""
