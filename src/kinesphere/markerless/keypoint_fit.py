@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from kinesphere.data import Array
 from kinesphere.data.keypoints import KEYPOINTS
 from kinesphere.geometry.rotations import rotation_about, rotation_between
+from kinesphere.markerless.anatomy import RIGHT
 from kinesphere.markerless.body import Body
 from kinesphere.markerless.chain import SLIDE
 from kinesphere.markerless.hypotheses import hinge, standing
@@ -30,6 +31,8 @@ _SPREAD, _VAGUE = 0.015, 0.04
 _FAR = 3.0
 """Spreads from which on a keypoint's say falls off."""
 _STEPS = 40
+_PITCHES = np.radians([0.0, 35.0, -35.0])
+"""By which the pelvis is tilted to begin with."""
 _TWISTS = np.radians(np.linspace(-100, 100, 11))
 
 
@@ -74,21 +77,25 @@ def marks_of(body: Body) -> Marks:
     return Marks(np.array(limbs), np.array(places), np.array(spread))
 
 
-def seeded(body: Body, marks: Marks, points: Mapping[str, Array]) -> Pose:
+def seeded(body: Body, marks: Marks, points: Mapping[str, Array], pitch: float = 0.0) -> Pose:
     """Return a rough pose: the trunk by hips and shoulders, arms and legs by their directions.
 
     Parameters
     ----------
     points
         (3,) m of the keypoints that are known: of hips and shoulders one pair and one more.
+    pitch
+        rad by which the pelvis is tilted against the trunk, which hips and shoulders do not tell.
     """
     chain = body.chain
     own = dict(zip(KEYPOINTS, marks.places, strict=True))
     known = [n for n in points if n.endswith(("hip", "shoulder"))]
     turn = _trunk_axes(points) @ _trunk_axes({n: own[n] for n in known}).T
+    tilt = rotation_about(RIGHT, np.asarray(pitch))
     pose = standing(chain)
     balls = pose.balls.copy()
-    balls[0] = turn
+    balls[0] = turn @ tilt
+    balls[chain.limb_names.index("trunk")] = tilt.T
     there, here = (np.mean([of[n] for n in known], axis=0) for of in (points, own))
     pose = replace(pose, balls=balls, position=there + turn @ (chain.centres[0] - here))
     for side in ("left", "right"):
@@ -160,17 +167,16 @@ def _limb(
     return best
 
 
-def fitted(
-    body: Body, marks: Marks, points: Array, pose: Pose, settings: TrackSettings
-) -> tuple[Pose, Array]:
+def fitted(body: Body, marks: Marks, points: Array, settings: TrackSettings) -> tuple[Pose, Array]:
     """Return the pose that brings a body's keypoints to ``points``, and how far off each is.
 
-    Gauss–Newton within the joints' limits, held weakly to rest, keypoints far off weighing little.
+    Gauss–Newton within the joints' limits, held weakly to rest, keypoints far off weighing little;
+    from a rough pose with the pelvis tilted either way or not, and the best taken.
 
     Parameters
     ----------
     points : (n_keypoints, 3)
-        m; NaN where not known.
+        m; NaN where not known; of hips and shoulders one pair and one more are needed.
 
     Returns
     -------
@@ -178,6 +184,17 @@ def fitted(
     off : (n_keypoints,)
         m; NaN where not known.
     """
+    at = {n: p for n, p in zip(KEYPOINTS, points, strict=True) if np.isfinite(p).all()}
+    starts = [seeded(body, marks, at, float(pitch)) for pitch in _PITCHES]
+    found = [_descended(body, marks, points, start, settings) for start in starts]
+    pose, off, _ = min(found, key=lambda one: one[2])
+    return pose, off
+
+
+def _descended(
+    body: Body, marks: Marks, points: Array, pose: Pose, settings: TrackSettings
+) -> tuple[Pose, Array, float]:
+    """Return the pose after Gauss–Newton, how far off each keypoint is, and the cost."""
     chain = body.chain
     known = np.flatnonzero(np.isfinite(points).all(axis=1))
     on = marks.limbs[known]
@@ -201,4 +218,5 @@ def fitted(
         pose, step = solve_step(chain, pose, equations, (rest(chain, settings, pose),), 1e-3)
         if step < 1e-5:
             break
-    return pose, np.linalg.norm(marks.at(body, pose) - points, axis=1)
+    off = np.linalg.norm(marks.at(body, pose) - points, axis=1)
+    return pose, off, float(np.log1p((off[known] / marks.spread[known] / _FAR) ** 2).sum())

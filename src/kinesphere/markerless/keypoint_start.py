@@ -8,7 +8,7 @@ from kinesphere.data import Array, Scene
 from kinesphere.data.keypoints import KEYPOINTS, PlacedKeypoints
 from kinesphere.data.surface import Surface
 from kinesphere.markerless.anatomy import full_body
-from kinesphere.markerless.keypoint_fit import Marks, fitted, marks_of, seeded
+from kinesphere.markerless.keypoint_fit import Marks, fitted, marks_of
 from kinesphere.markerless.pose import Pose
 from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.shape import shaped
@@ -86,7 +86,7 @@ def pose_from_keypoints(
         logs[0] += size
         body = full_body(shaped(surface, logs))
         marks = marks_of(body)
-    pose, off = fitted(body, marks, points, seeded(body, marks, at), settings)
+    pose, off = fitted(body, marks, points, settings)
     if np.nanmedian(off) > _OFF:
         raise UnusableKeypoints(
             f"the body model misses them by {np.nanmedian(off) * 1e3:.0f} mm in the middle"
