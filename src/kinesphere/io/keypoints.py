@@ -15,6 +15,8 @@ from kinesphere.data.keypoints import KEYPOINTS
 from kinesphere.errors import UnreadableFile
 from kinesphere.io.json_files import read_json
 
+_BEYOND = 1e6
+"""px; no image is as large, and what lies there was not seen."""
 _ARMS = ("shoulder", "elbow", "wrist")
 _LEGS = ("hip", "knee", "ankle")
 
@@ -90,7 +92,7 @@ def _person(person: object, path: Path) -> Array | None:
     rows = flat.reshape(-1, 3)
     out = np.tile([np.nan, np.nan, 0.0], (len(KEYPOINTS), 1))
     for name, row in zip(SETS[len(rows)][1], rows, strict=False):
-        if name in KEYPOINTS and np.isfinite(row).all() and row[2] > 0:
+        if name in KEYPOINTS and row[2] > 0 and (np.abs(row) < _BEYOND).all():
             out[KEYPOINTS.index(name)] = (row[0], row[1], min(row[2], 1.0))
     return out
 

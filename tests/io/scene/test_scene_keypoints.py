@@ -76,11 +76,12 @@ def test_what_was_not_seen_has_no_place(tmp_path):
     path = tmp_path / "a.json"
     one = person()
     one["pose_keypoints_2d"][0:3] = [0, 0, 0]
+    one["pose_keypoints_2d"][12] = 1e300  # its right wrist
     write_people(path, one, {}, {"pose_keypoints_2d": []})
     path.write_text(path.read_text().replace("14.0, 28.0", "NaN, NaN"))  # BODY_25's left ankle
     people = read_people(path)
     assert len(people) == 1
-    for k in (NOSE, ANKLE):
+    for k in (NOSE, ANKLE, KEYPOINTS.index("right_wrist")):
         assert np.isnan(people[0, k, :2]).all()
         assert people[0, k, 2] == 0
 
