@@ -17,7 +17,7 @@ from kinesphere.data.keypoints import KEYPOINTS, SeenKeypoints
 from kinesphere.io.json_files import write_json
 from kinesphere.io.keypoints import SETS
 from kinesphere.markerless.anatomy import full_body
-from kinesphere.markerless.keypoint_fit import marks_of
+from kinesphere.markerless.keypoint_marks import marks_of
 from kinesphere.markerless.keypoint_start import pose_from_keypoints
 from kinesphere.markerless.pose import posed
 from kinesphere.markerless.settings import TrackSettings

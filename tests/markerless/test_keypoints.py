@@ -11,12 +11,14 @@ from kinesphere.data.keypoints import KEYPOINTS, PlacedKeypoints, SeenKeypoints
 from kinesphere.markerless.anatomy import full_body, upper_body
 from kinesphere.markerless.first_pose import first_pose
 from kinesphere.markerless.hypotheses import facing, standing
-from kinesphere.markerless.keypoint_fit import fitted, marks_of, seeded
+from kinesphere.markerless.keypoint_fit import fitted, seeded
+from kinesphere.markerless.keypoint_marks import marks_of
 from kinesphere.markerless.keypoint_start import UnusableKeypoints, pose_from_keypoints
 from kinesphere.markerless.pose import limited, moved, posed
 from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.shape import FACTORS, shaped
 from kinesphere.markerless.triangulation import triangulated
+from kinesphere.synthetic.film import make_film
 
 SETTINGS = TrackSettings()
 NOTHING = np.zeros(len(FACTORS))
@@ -209,3 +211,19 @@ def test_a_known_height_is_kept_and_the_upper_model_served(whole, upper, ring, r
     assert len(start.pose.angles) == upper.chain.n_dofs
     tall = replace(scene, body=BodyChoice(height=1.05 * np.ptp(surface.vertices[:, 1])))
     assert_allclose(first_pose(tall, surface, full_body, SETTINGS, None).logs[0], np.log(1.05))
+
+
+@pytest.mark.slow
+def test_the_images_serve_where_keypoints_do_not(whole):
+    film = make_film(4, "arms", size=(200, 150), n_frames=1, n_cameras=3, masks=True)
+    nobody = PlacedKeypoints(cloud(np.random.default_rng(2)) * 1000)
+    scene = replace(film.scene, start=StartChoice(keypoints=nobody), body=BodyChoice(fit=False))
+    start = first_pose(scene, bundled_body(), full_body, SETTINGS, scene.frame(0))
+    assert start.how == "silhouettes"
+    assert len(start.warnings) == 1
+    assert start.warnings[0].startswith("the keypoints are not used, but the images: arms and legs")
+    limbs = film.motion.surface.limbs
+    names = whole.chain.limb_names
+    at = posed(whole.chain, start.pose).centres[[names.index(n) for n in limbs if n in names]]
+    there = film.motion.joint_centres[0, [i for i, n in enumerate(limbs) if n in names]]
+    assert np.linalg.norm(at - there, axis=1).mean() < 0.1

@@ -1,10 +1,9 @@
 """A body's pose by where some of its points are: inverse kinematics."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinesphere.data import Array
 from kinesphere.data.keypoints import KEYPOINTS
@@ -13,68 +12,18 @@ from kinesphere.markerless.anatomy import RIGHT
 from kinesphere.markerless.body import Body
 from kinesphere.markerless.chain import SLIDE
 from kinesphere.markerless.hypotheses import hinge, standing
+from kinesphere.markerless.keypoint_marks import Marks
 from kinesphere.markerless.pose import Pose, limited, posed
 from kinesphere.markerless.prediction import rest
 from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.solver import Normals, solve_step
 
-_JOINTS = {
-    "shoulder": "upper_arm",
-    "elbow": "forearm",
-    "wrist": "hand",
-    "hip": "thigh",
-    "knee": "shank",
-    "ankle": "foot",
-}
-_SPREAD, _VAGUE = 0.015, 0.04
-"""m by which joints, and points of head and feet, are usually off."""
 _FAR = 3.0
 """Spreads from which on a keypoint's say falls off."""
 _STEPS = 40
 _PITCHES = np.radians([0.0, 35.0, -35.0])
 """By which the pelvis is tilted to begin with."""
 _TWISTS = np.radians(np.linspace(-100, 100, 11))
-
-
-@dataclass(frozen=True, eq=False)
-class Marks:
-    """Keypoints as points of a body."""
-
-    limbs: NDArray[np.intp]
-    """(n_keypoints,) the chain's limb each rides on."""
-    places: Array
-    """(n_keypoints, 3) m in the bind pose."""
-    spread: Array
-    """(n_keypoints,) m."""
-
-    def at(self, body: Body, pose: Pose) -> Array:
-        """Return where a pose puts them, (n_keypoints, 3) m."""
-        now = posed(body.chain, pose)
-        out = self.places - body.chain.centres[self.limbs]
-        turned = np.einsum("kij,kj->ki", now.rotations[self.limbs], out)
-        return np.asarray(turned + now.centres[self.limbs])
-
-
-def marks_of(body: Body) -> Marks:
-    """Return where on a full body keypoints are: joint centres, nose, ears, toes and heels."""
-    names = body.chain.limb_names
-    limbs, places, spread = [], [], []
-    for keypoint in KEYPOINTS:
-        side, _, what = keypoint.rpartition("_") if keypoint == "nose" else keypoint.partition("_")
-        if what in _JOINTS:
-            limb = names.index(f"{side}_{_JOINTS[what]}")
-            place = body.chain.centres[limb]
-        else:
-            limb = names.index(f"{side}_foot" if what in ("big_toe", "heel") else "head")
-            skin = body.bind[body.limb_of_vertex == limb]
-            ahead = skin[:, 0] if what in ("nose", "big_toe") else -skin[:, 0]
-            if what == "ear":
-                ahead = skin[:, 2] if side == "right" else -skin[:, 2]
-            place = skin[ahead.argmax()]
-        limbs.append(limb)
-        places.append(place)
-        spread.append(_SPREAD if what in _JOINTS else _VAGUE)
-    return Marks(np.array(limbs), np.array(places), np.array(spread))
 
 
 def seeded(body: Body, marks: Marks, points: Mapping[str, Array], pitch: float = 0.0) -> Pose:

@@ -7,8 +7,10 @@ import numpy as np
 from kinesphere.data import Array, Scene
 from kinesphere.data.keypoints import KEYPOINTS, PlacedKeypoints
 from kinesphere.data.surface import Surface
+from kinesphere.errors import KinesphereError
 from kinesphere.markerless.anatomy import full_body
-from kinesphere.markerless.keypoint_fit import Marks, fitted, marks_of
+from kinesphere.markerless.keypoint_fit import fitted
+from kinesphere.markerless.keypoint_marks import Marks, marks_of
 from kinesphere.markerless.pose import Pose
 from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.shape import shaped
@@ -28,7 +30,7 @@ _ALIKE = 0.5
 _LIMBS = {"arm": ("elbow", "wrist"), "leg": ("knee", "ankle")}
 
 
-class UnusableKeypoints(Exception):
+class UnusableKeypoints(KinesphereError):
     """Keypoints show no pose; the message says why."""
 
 

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from kinesphere.data.directions import world_from_up
 from kinesphere.data.keypoints import KEYPOINTS, PlacedKeypoints, SeenKeypoints
 from kinesphere.errors import BadScene, UnreadableFile
 from kinesphere.io.keypoints import SETS, keypoint_columns, read_people
 from kinesphere.io.scene import read_scene
+from kinesphere.io.scene.keypoints import start_keypoints
 from kinesphere.io.trc import write_trc
 
 NOSE, ANKLE = KEYPOINTS.index("nose"), KEYPOINTS.index("left_ankle")
@@ -202,6 +204,22 @@ def test_a_trc_file_comes_in_metres_and_in_the_calibrations_axes(keyed, film, re
     write_trc(recording_of(points, ("A", "B", "C", "D"), 25.0), keyed / "a.trc", "m")
     with pytest.raises(UnreadableFile, match="no label is a keypoint"):
         read_scene(path)
+
+
+@pytest.mark.parametrize("axes", ["calibration", "y-up"])
+def test_axes_of_a_trc_file_are_guessed_by_who_stands_upright(tmp_path, axes, film, recording_of):
+    turn = world_from_up("+z")
+    world = np.array([[0.1, 1.3, 0.2], [0.1, 1.3, -0.2], [0.1, 0.5, 0.1], [0.2, 0.1, -0.1]])
+    calibration = world @ turn
+    points = calibration if axes == "calibration" else calibration[:, [1, 2, 0]]
+    labels = ("RShoulder", "LShoulder", "RKnee", "LAnkle")
+    path = tmp_path / "a.trc"
+    write_trc(recording_of(points[None], labels, 25.0), path, "m")
+    for asked in (None, axes):
+        found, words = start_keypoints(path, asked, (), film.scene.cameras, turn, 0, 1)
+        at = [KEYPOINTS.index(n) for n in keypoint_columns(labels)]
+        assert_allclose(found.points[at], world, atol=1e-8)
+        assert [f'"{axes}" is guessed' in sentence for sentence in words] == [True] * (not asked)
 
 
 @pytest.fixture

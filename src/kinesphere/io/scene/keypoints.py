@@ -9,16 +9,13 @@ import numpy as np
 from kinesphere.data import Array, Camera
 from kinesphere.data.keypoints import KEYPOINTS, PlacedKeypoints, SeenKeypoints
 from kinesphere.errors import BadScene, UnreadableFile
-from kinesphere.io.keypoints import keypoint_columns, read_people
+from kinesphere.io.keypoints import read_people
 from kinesphere.io.scene.image_folder import ImageFolder
 from kinesphere.io.scene.opened import OpenedCamera
-from kinesphere.io.trc import read_trc
+from kinesphere.io.scene.placed_keypoints import WITHOUT, placed_keypoints
 
 CONFIDENT = 0.3
 """Keypoints less sure than this are left out."""
-_WITHOUT = "; the start is found by the images instead"
-_Y_UP = np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]])
-"""From axes with y up to a calibration with z up, as Pose2Sim turns its TRC files."""
 
 
 def start_keypoints(
@@ -55,7 +52,7 @@ def start_keypoints(
         If its folders belong to fewer than two cameras.
     """
     if path.suffix.lower() == ".trc":
-        return _from_trc(path, axes, cameras, turn, frame, n_frames)
+        return placed_keypoints(path, axes, cameras, turn, frame, n_frames)
     if not path.is_dir():
         raise UnreadableFile(
             f"{path}: no such keypoints; a folder with a folder of JSON files for each camera, or "
@@ -100,7 +97,7 @@ def _from_folders(
         return None, [
             *said,
             f"{path}: in frame {frame} keypoints are confident in {found or 'no camera'}, and two "
-            f"are needed{_WITHOUT}",
+            f"are needed{WITHOUT}",
         ]
     return SeenKeypoints(pixels, confidence), said
 
@@ -138,70 +135,3 @@ def _file_of(one: OpenedCamera, folder: Path, frame: int, said: list[str]) -> Pa
     elif number not in numbers:
         said.append(f"{folder} has no file with number {number} for frame {frame}")
     return numbers.get(number)
-
-
-def _from_trc(
-    path: Path, axes: str | None, cameras: Sequence[Camera], turn: Array, frame: int, n_frames: int
-) -> tuple[PlacedKeypoints | None, list[str]]:
-    recording = read_trc(path)
-    columns = keypoint_columns(recording.labels)
-    if not columns:
-        shown = ", ".join(recording.labels[:6])
-        raise UnreadableFile(
-            f"{path}: no label is a keypoint's ({shown}, …); RShoulder or right_hip is"
-        )
-    said = list(recording.history[0].warnings)
-    row = frame
-    if recording.n_frames != n_frames:
-        row = frame - recording.first_frame
-        said.append(
-            f"{path} has {recording.n_frames} rows, the cameras {n_frames} frames; the row with "
-            f"Frame# {frame} is taken"
-        )
-    points = np.full((len(KEYPOINTS), 3), np.nan)
-    if 0 <= row < recording.n_frames:
-        for name, column in columns.items():
-            points[KEYPOINTS.index(name)] = recording.markers[row, column]
-    if not np.isfinite(points).any():
-        return None, [*said, f"{path} shows nobody in frame {frame}{_WITHOUT}"]
-    choices = {"calibration": points @ turn.T}
-    if turn[1, 2] == 1:  # the calibration has z up
-        choices["y-up"] = points @ (turn @ _Y_UP).T
-    if axes is None:
-        fits = {name: _fit(p, cameras) for name, p in choices.items()}
-        axes = max(fits, key=lambda name: fits[name])
-        if len(choices) > 1:
-            said.append(
-                f'{path} does not say its axes; keypoints_axes = "{axes}" is guessed, as the '
-                "person is upright and in the images then"
-            )
-    elif axes not in choices:
-        raise BadScene(f'keypoints_axes = "{axes}" is for calibrations with z up; this one has not')
-    placed = choices[axes]
-    if _inside(placed, cameras) < 0.5:
-        return None, [*said, f"{path}: its keypoints lie outside most images{_WITHOUT}"]
-    return PlacedKeypoints(placed), said
-
-
-def _fit(points: Array, cameras: Sequence[Camera]) -> float:
-    """Return how well points suit axes: the share inside the images, and how upright they are."""
-    at = dict(zip(KEYPOINTS, points, strict=True))
-    with np.errstate(invalid="ignore"):
-        top, low = (
-            [at[f"{s}_{j}"] for s in ("left", "right") for j in joints]
-            for joints in (("shoulder", "hip"), ("knee", "ankle"))
-        )
-    rise = np.nan_to_num(np.mean(top, axis=0) - np.mean(low, axis=0))
-    upright = rise[1] / max(float(np.linalg.norm(rise)), 1e-9)
-    return _inside(points, cameras) + 0.5 * float(upright)
-
-
-def _inside(points: Array, cameras: Sequence[Camera]) -> float:
-    known = points[np.isfinite(points).all(axis=1)]
-    shares = []
-    for camera in cameras:
-        pixels = camera.project(known)
-        with np.errstate(invalid="ignore"):
-            inside = (pixels >= 0) & (pixels < (camera.width, camera.height))
-        shares.append(inside.all(axis=1).mean())
-    return float(np.mean(shares))
