@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.markerless.keypoints import write_keypoints
 from kinesphere.data import bundled_body
 from kinesphere.io import replacing, write_c3d
 from kinesphere.io.model_json import write_model
@@ -62,6 +63,11 @@ def main() -> None:
     parser.add_argument("--plates", action="store_true", help="with images of the empty room")
     parser.add_argument("--images", default="mp4", choices=("png", "jpg", "mkv", "mp4"))
     parser.add_argument("--other", action="store_true", help="a person built unlike the model")
+    parser.add_argument(
+        "--keypoints",
+        type=float,
+        help="to start from, as an estimator off by so many px finds them",
+    )
     asked = parser.parse_args()
     body = bundled_body()
     film = make_film(
@@ -74,7 +80,12 @@ def main() -> None:
         plates=asked.plates,
         surface=another_person(body, np.random.default_rng(asked.seed)) if asked.other else body,
     )
-    print(write_film(film, asked.folder, asked.images))
+    path = write_film(film, asked.folder, asked.images)
+    if asked.keypoints is not None:
+        place = asked.folder / "keypoints"
+        write_keypoints(film, place, asked.seed, asked.keypoints, asked.frames)
+        path.write_text(path.read_text() + '\n[start]\nkeypoints = "keypoints"\n')
+    print(path)
 
 
 if __name__ == "__main__":

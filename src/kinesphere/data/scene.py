@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from kinesphere.data.arrays import Array, Mask, frozen
 from kinesphere.data.camera import Camera
 from kinesphere.data.history import History
+from kinesphere.data.keypoints import PlacedKeypoints, SeenKeypoints
 from kinesphere.data.surface import Surface
 from kinesphere.errors import BadScene
 
@@ -71,6 +72,8 @@ class StartChoice:
     """About where the person looks, in the scene's world."""
     values: Mapping[str, float] = field(default_factory=dict)
     """Values of the body model's own pose parameters by name, in m and rad."""
+    keypoints: SeenKeypoints | PlacedKeypoints | None = None
+    """Where a pose estimator found the person in that frame; they replace the search."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,17 +12,22 @@ from kinesphere.io.atomic import replacing
 from kinesphere.io.text import read_text
 
 
-def read_json(path: Path) -> Any:
+def read_json(path: Path, *, nan: bool = False) -> Any:
     """Return what a JSON file holds.
+
+    Parameters
+    ----------
+    nan
+        Whether NaN and Infinity are let through, as other programs write them.
 
     Raises
     ------
     UnreadableFile
-        Naming line and column of what is no JSON; NaN and Infinity are none.
+        Naming line and column of what is no JSON; NaN and Infinity are none, unless let through.
     """
     text = read_text(path)
     try:
-        return json.loads(text, parse_constant=_refuse)
+        return json.loads(text, parse_constant=float if nan else _refuse)
     except json.JSONDecodeError as error:
         raise UnreadableFile(
             f"{path}: line {error.lineno}, column {error.colno} is no JSON ({error.msg})"

@@ -17,11 +17,12 @@ _WHOLE = 0.8
 def with_person_in_view(scene: Scene) -> Scene:
     """Return the scene with its start moved to where the person is seen, if it is not there.
 
-    Told by masks or plates; without them, and where the start's pose is given, the scene comes
-    back as it is. What was done is a step of its history.
+    Told by masks or plates; without them, and where the start's pose or keypoints are given, the
+    scene comes back as it is. What was done is a step of its history.
     """
     start = scene.start
-    if start.pose == "given" or not (scene.has_masks or any(p is not None for p in scene.plates)):
+    known = start.pose == "given" or start.keypoints is not None
+    if known or not (scene.has_masks or any(p is not None for p in scene.plates)):
         return scene
     if sum(mask is not None for mask in silhouettes(scene, scene.frame(start.frame))) > 1:
         return scene

@@ -1,4 +1,4 @@
-"""The first pose: given, or found by silhouettes."""
+"""The first pose: given, found by a pose estimator's keypoints, or by silhouettes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ from kinesphere.errors import BadScene
 from kinesphere.markerless.anatomy import full_body
 from kinesphere.markerless.body import Body
 from kinesphere.markerless.eyes import fitter_for
+from kinesphere.markerless.keypoint_start import UnusableKeypoints, pose_from_keypoints
 from kinesphere.markerless.pose import Pose
 from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.shape import FACTORS, shaped
@@ -29,7 +30,9 @@ class FirstPose:
     overlap: float
     """Mean over cameras, of the model with the silhouettes; NaN for a given pose."""
     how: str
-    """``given`` or ``silhouettes``."""
+    """``given``, ``keypoints`` or ``silhouettes``."""
+    warnings: tuple[str, ...] = ()
+    """What is to be said about it, a sentence each."""
 
 
 def first_pose(
@@ -61,6 +64,19 @@ def first_pose(
         for name, value in start.values.items():
             values[names[name]] = value
         return FirstPose(body.pose(values), logs, float("nan"), "given")
+    fit = scene.body.fit and scene.body.height is None
+    doubts: tuple[str, ...] = ()
+    if start.keypoints is not None:
+        try:
+            known = pose_from_keypoints(scene, surface, logs, settings, sizes=fit)
+        except UnusableKeypoints as error:
+            doubts = (f"the keypoints are not used, but the images: {error}",)
+        else:
+            pose = known.pose
+            if model is not full_body:
+                source = full_body(shaped(surface, known.logs)).chain
+                pose = taken_over(source, pose, model(shaped(surface, known.logs)).chain)
+            return FirstPose(pose, known.logs, float("nan"), "keypoints", known.warnings)
     whole = fitter_for(full_body(shaped(surface, logs)), scene.cameras, settings, masks=True)
     views = [eye.canvas.view for eye in whole.eyes]
     found = find_start(
@@ -71,10 +87,10 @@ def first_pose(
         position=None if start.position is None else np.array(start.position),
         heading=None if start.facing is None else np.array(start.facing),
         arms="standing" if start.pose == "auto" else start.pose,
-        fit=scene.body.fit and scene.body.height is None,
+        fit=fit,
     )
     source = full_body(shaped(surface, found.logs)).chain
     target = model(shaped(surface, found.logs)).chain
     pose = found.pose if model is full_body else taken_over(source, found.pose, target)
     overlap = float(np.nanmean(found.overlap))
-    return FirstPose(pose, found.logs, overlap, "silhouettes")
+    return FirstPose(pose, found.logs, overlap, "silhouettes", doubts)

@@ -40,7 +40,7 @@ def arm_poses(chain: Chain, pose: Pose, side: str) -> Iterator[Pose]:
     limb = names.index(f"{side}_upper_arm")
     link = chain.links[limb]
     out = RIGHT if side == "right" else -RIGHT
-    elbow, elbow_at = _hinge(chain, f"{side}_forearm")
+    elbow, elbow_at = hinge(chain, f"{side}_forearm")
     for ahead, up, outward in _ARMS:
         towards = ahead * AHEAD + up * UP + outward * out
         least = rotation_between(link.long_axis, towards / np.linalg.norm(towards))
@@ -65,7 +65,7 @@ def arm_places(chain: Chain, pose: Pose, side: str, directions: int = 180) -> It
     names = chain.limb_names
     limb = names.index(f"{side}_upper_arm")
     link = chain.links[limb]
-    elbow, elbow_at = _hinge(chain, f"{side}_forearm")
+    elbow, elbow_at = hinge(chain, f"{side}_forearm")
     bare = pose.angles.copy()
     bare[np.isin(chain.dof_limbs, [names.index(f"{side}_{b}") for b in ("forearm", "hand")])] = 0.0
     for i, towards in enumerate(_sphere(directions)):
@@ -92,7 +92,7 @@ def _sphere(n: int) -> Array:
 def leg_poses(chain: Chain, pose: Pose, side: str) -> Iterator[Pose]:
     """Yield the pose with one leg elsewhere."""
     limb = chain.limb_names.index(f"{side}_thigh")
-    knee, knee_at = _hinge(chain, f"{side}_shank")
+    knee, knee_at = hinge(chain, f"{side}_shank")
     for hip, bend in _LEGS:
         balls, angles = pose.balls.copy(), pose.angles.copy()
         balls[limb] = rotation_about(RIGHT, np.asarray(np.radians(hip)))
@@ -122,7 +122,7 @@ def facing(pose: Pose, position: Array, heading: Array, up: Array = UP) -> Pose:
     return replace(pose, position=np.asarray(position, dtype=np.float64), balls=balls)
 
 
-def _hinge(chain: Chain, limb: str) -> tuple[int, float]:
+def hinge(chain: Chain, limb: str) -> tuple[int, float]:
     """Return the first degree of freedom of a hinge, and its flexion in the bind pose in rad."""
     i = chain.limb_names.index(limb)
     link, parent = chain.links[i], chain.links[chain.parents[i]]

@@ -124,7 +124,7 @@ def track(
             "factors": {k: float(v) for k, v in zip(FACTORS, np.exp(logs), strict=True)},
             "start_overlap": None if np.isnan(start.overlap) else float(start.overlap),
         },
-        warnings=account.warnings(),
+        warnings=(*start.warnings, *account.warnings()),
     )
     fitted = replace(shaped(surface, logs), shapes=())
     return account.tracked((*scene.history, step), fitted)

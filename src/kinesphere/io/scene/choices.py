@@ -48,6 +48,8 @@ def start_choice(spec: SceneSpec, turn: Array, first: int, n_frames: int) -> Sta
         )
     if start.pose == "given" and not start.values:
         raise BadScene('start.pose = "given" needs start.values, the body model\'s parameters')
+    if start.pose == "given" and start.keypoints is not None:
+        raise BadScene('start.pose = "given" needs no start.keypoints; leave one of them out')
     where = None if start.position_m is None else tuple((turn @ start.position_m).tolist())
     facing = None if start.facing is None else tuple((turn @ start.facing).tolist())
     values = {

@@ -1,6 +1,7 @@
 """``SCENE.toml`` to a scene: every file it names is opened, and what does not fit is said."""
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -13,6 +14,7 @@ from kinesphere.io.gltf.body import read_body
 from kinesphere.io.scene.calibrated import calibrated_cameras
 from kinesphere.io.scene.choices import body_choice, start_choice
 from kinesphere.io.scene.footage import RecordedFootage, mask_offset
+from kinesphere.io.scene.keypoints import start_keypoints
 from kinesphere.io.scene.opened import open_camera, plate_of
 from kinesphere.io.scene.spec import SceneSpec
 from kinesphere.io.scene.timing import common_rate, common_span
@@ -90,6 +92,20 @@ def read_scene(path: str | Path) -> Scene:
         ),
     )
     warnings += [sentence for one in opened for sentence in one.stream.notes]
+    start = start_choice(spec, turn, first, n_frames)
+    if spec.start.keypoints is not None:
+        covered = min(one.stream.n_frames - one.spec.offset for one in opened)
+        keypoints, doubts = start_keypoints(
+            folder / spec.start.keypoints,
+            spec.start.keypoints_axes,
+            opened,
+            cameras,
+            turn,
+            start.frame + first,
+            covered,
+        )
+        start = replace(start, keypoints=keypoints)
+        warnings += doubts
     step = Step(
         "scene",
         settings={"file": path.name, "calibration": where},
@@ -115,7 +131,7 @@ def read_scene(path: str | Path) -> Scene:
         world_from_file=turn,
         body=body,
         surface=None if body.model in ("full", "upper") else read_body(body.model),
-        start=start_choice(spec, turn, first, n_frames),
+        start=start,
         has_masks=any(one.masks is not None for one in opened),
         first_frame=offsets[0],
         history=(step,),

@@ -67,6 +67,10 @@ class StartSpec(_Table):
     """About where the person looks, in the calibration's axes."""
     values: dict[Name, Finite] = Field(default_factory=dict)
     """The body model's own pose parameters by name: m and deg."""
+    keypoints: Name | None = None
+    """A folder of OpenPose's JSON files, a folder in it for each camera; or a TRC file."""
+    keypoints_axes: Literal["calibration", "y-up"] | None = None
+    """Of a TRC file: the calibration's, or y up where the calibration has z up (z, x, y there)."""
 
 
 class SceneSpec(_Table):
