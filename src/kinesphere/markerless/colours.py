@@ -25,6 +25,8 @@ SIDE = 16
 _AB = 64.0  # a and b beyond this share the last bin: nothing in a room is more colourful
 _MARGIN = 20
 """px around the model in which a person is looked for."""
+_CHANGED = 0.02
+"""nats a pixel; from which on the light has changed so much that limbs are learnt in full."""
 _NOTHING = np.zeros((2, 2, 3), dtype=np.uint8)
 
 
@@ -53,6 +55,8 @@ class Colours:
             np.zeros((1, SIDE**3), dtype=np.float32),
         ]
         self._densities = [np.zeros_like(counts) for counts in self._counts]
+        self._witness = np.zeros(SIDE**3, dtype=np.float32)
+        """Background in the light in which the limbs were learnt."""
         self._levels = Levels(_NOTHING)
         self._seeing = False
 
@@ -111,7 +115,13 @@ class Colours:
         return out
 
     def learn(self, rim: Rim, parts: Parts, rate: float) -> None:
-        """Mix the colours of the present pose into those known."""
+        """Mix the colours of the present pose into those known.
+
+        Limbs wear what they wear: theirs change with the light, which the background tells of
+        wherever the pose is. They are learnt as far as it has changed since; what lies beside
+        them is learnt always, as they move. Learnt in every frame, a sleeve put wrong becomes
+        right by and by.
+        """
         fresh = [np.zeros_like(counts) for counts in self._counts]
         image, bins = self._levels[1], lab_bins()
         count_lines_kernel(
@@ -130,15 +140,22 @@ class Colours:
             fresh[1],
         )
         count_far_kernel(parts.limbs, image, bins, 4, fresh[2][0])
-        for known, new, density in zip(self._counts, fresh, self._densities, strict=True):
-            total = new.sum(axis=1, keepdims=True)
-            seen = total[:, 0] > 0
-            empty = seen & (known.sum(axis=1) == 0)
-            share = np.where(empty, 1.0, rate * seen)[:, None].astype(np.float32)
-            known *= 1 - share
-            known += share * new / np.maximum(total, 1)
+        limb_rate = rate if rate >= 1 else rate * min(1.0, self._change(fresh[2][0]) / _CHANGED)
+        _mix(self._witness[None], fresh[2], limb_rate)
+        rates = (limb_rate, rate, rate)
+        for known, new, density, share in zip(
+            self._counts, fresh, self._densities, rates, strict=True
+        ):
+            _mix(known, new, share)
             for row, out in zip(known, density, strict=True):
                 blurred_kernel(row, SIDE, out)
+
+    def _change(self, far: NDArray[np.float32]) -> float:
+        """Return how much worse the background is explained by what it was, in nats a pixel."""
+        now, then = np.empty_like(far), np.empty_like(far)
+        blurred_kernel(far, SIDE, now)
+        blurred_kernel(self._witness, SIDE, then)
+        return max(0.0, float((now * np.log((now + FLOOR) / (then + FLOOR))).sum()))
 
     def score(self, parts: Parts, scores: Array, counts: Array) -> None:
         """Add how much a pose explains."""
@@ -175,6 +192,16 @@ class Colours:
         ground = 0.5 * (near * beside).sum(axis=0) / max(1, beside.sum()) + 0.5 * far[0]
         ratio = np.log((person + FLOOR) / (ground + FLOOR)).astype(np.float32)
         return model[grid], np.asarray(cv2.blur(ratio[bins], (3, 3)) > 0)
+
+
+def _mix(known: NDArray[np.float32], new: NDArray[np.float32], rate: float) -> None:
+    """Let new counts, (n, n_bins), have a share in known ones; all where nothing was known."""
+    total = new.sum(axis=1, keepdims=True)
+    seen = total[:, 0] > 0
+    empty = seen & (known.sum(axis=1) == 0)
+    share = np.where(empty, 1.0, rate * seen)[:, None].astype(np.float32)
+    known *= 1 - share
+    known += share * new / np.maximum(total, 1)
 
 
 def _nearest(limbs: NDArray[np.int32]) -> NDArray[np.int32]:
