@@ -1,13 +1,12 @@
 """Evidence from colours: of limbs, of what lies beside them, of the rest of the room."""
 
-from functools import cache
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Mask
 from kinesphere.markerless.evidence import MOST, STRIDE, Levels
+from kinesphere.markerless.histograms import SIDE, change, lab_bins, mix
 from kinesphere.markerless.kernels.colour import (
     FLOOR,
     blurred_kernel,
@@ -20,25 +19,11 @@ from kinesphere.markerless.kernels.lines import SAMPLES
 from kinesphere.markerless.kernels.region import log_ratios_kernel, region_score_kernel
 from kinesphere.markerless.rim import Parts, Rim, around
 
-SIDE = 16
-"""Bins along each of lightness, a and b."""
-_AB = 64.0  # a and b beyond this share the last bin: nothing in a room is more colourful
 _MARGIN = 20
 """px around the model in which a person is looked for."""
 _CHANGED = 0.02
 """nats a pixel; from which on the light has changed so much that limbs are learnt in full."""
 _NOTHING = np.zeros((2, 2, 3), dtype=np.uint8)
-
-
-@cache
-def lab_bins() -> NDArray[np.uint16]:
-    """Return the histogram bin of five bits each of red, green and blue, (32768,)."""
-    steps = (np.arange(32) * 8 + 4).astype(np.uint8)
-    colours = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1)
-    lab = cv2.cvtColor(colours.reshape(1, -1, 3).astype(np.float32) / 255, cv2.COLOR_RGB2LAB)[0]
-    lightness = np.clip(lab[:, 0] / 100 * SIDE, 0, SIDE - 1).astype(int)
-    ab = np.clip((lab[:, 1:] + _AB) / (2 * _AB) * SIDE, 0, SIDE - 1).astype(int)
-    return np.asarray((lightness * SIDE + ab[:, 0]) * SIDE + ab[:, 1], dtype=np.uint16)
 
 
 class Colours:
@@ -140,22 +125,17 @@ class Colours:
             fresh[1],
         )
         count_far_kernel(parts.limbs, image, bins, 4, fresh[2][0])
-        limb_rate = rate if rate >= 1 else rate * min(1.0, self._change(fresh[2][0]) / _CHANGED)
-        _mix(self._witness[None], fresh[2], limb_rate)
+        limb_rate = rate
+        if rate < 1:
+            limb_rate *= min(1.0, change(fresh[2][0], self._witness) / _CHANGED)
+        mix(self._witness[None], fresh[2], limb_rate)
         rates = (limb_rate, rate, rate)
         for known, new, density, share in zip(
             self._counts, fresh, self._densities, rates, strict=True
         ):
-            _mix(known, new, share)
+            mix(known, new, share)
             for row, out in zip(known, density, strict=True):
                 blurred_kernel(row, SIDE, out)
-
-    def _change(self, far: NDArray[np.float32]) -> float:
-        """Return how much worse the background is explained by what it was, in nats a pixel."""
-        now, then = np.empty_like(far), np.empty_like(far)
-        blurred_kernel(far, SIDE, now)
-        blurred_kernel(self._witness, SIDE, then)
-        return max(0.0, float((now * np.log((now + FLOOR) / (then + FLOOR))).sum()))
 
     def score(self, parts: Parts, scores: Array, counts: Array) -> None:
         """Add how much a pose explains."""
@@ -192,16 +172,6 @@ class Colours:
         ground = 0.5 * (near * beside).sum(axis=0) / max(1, beside.sum()) + 0.5 * far[0]
         ratio = np.log((person + FLOOR) / (ground + FLOOR)).astype(np.float32)
         return model[grid], np.asarray(cv2.blur(ratio[bins], (3, 3)) > 0)
-
-
-def _mix(known: NDArray[np.float32], new: NDArray[np.float32], rate: float) -> None:
-    """Let new counts, (n, n_bins), have a share in known ones; all where nothing was known."""
-    total = new.sum(axis=1, keepdims=True)
-    seen = total[:, 0] > 0
-    empty = seen & (known.sum(axis=1) == 0)
-    share = np.where(empty, 1.0, rate * seen)[:, None].astype(np.float32)
-    known *= 1 - share
-    known += share * new / np.maximum(total, 1)
 
 
 def _nearest(limbs: NDArray[np.int32]) -> NDArray[np.int32]:
