@@ -34,13 +34,12 @@ class Colours:
     ) -> None:
         n = int(groups.max()) + 1
         self._groups, self._near_limbs, self._local = groups, near_limbs, local
-        self._counts = [
+        self._densities = [
             np.zeros((n, SIDE**3), dtype=np.float32),
             np.zeros((n, SIDE**3), dtype=np.float32),
             np.zeros((1, SIDE**3), dtype=np.float32),
         ]
-        self._densities = [np.zeros_like(counts) for counts in self._counts]
-        self._witness = np.zeros(SIDE**3, dtype=np.float32)
+        self._witness = np.zeros((1, SIDE**3), dtype=np.float32)
         """Background in the light in which the limbs were learnt."""
         self._levels = Levels(_NOTHING)
         self._seeing = False
@@ -107,7 +106,7 @@ class Colours:
         them is learnt always, as they move. Learnt in every frame, a sleeve put wrong becomes
         right by and by.
         """
-        fresh = [np.zeros_like(counts) for counts in self._counts]
+        fresh = [np.zeros_like(counts) for counts in self._densities]
         image, bins = self._levels[1], lab_bins()
         count_lines_kernel(
             rim.pixels,
@@ -125,17 +124,16 @@ class Colours:
             fresh[1],
         )
         count_far_kernel(parts.limbs, image, bins, 4, fresh[2][0])
+        for counts in fresh:
+            for row in counts:
+                blurred_kernel(row, SIDE, row)
         limb_rate = rate
         if rate < 1:
-            limb_rate *= min(1.0, change(fresh[2][0], self._witness) / _CHANGED)
-        mix(self._witness[None], fresh[2], limb_rate)
+            limb_rate *= min(1.0, change(fresh[2], self._witness) / _CHANGED)
+        mix(self._witness, fresh[2], limb_rate)
         rates = (limb_rate, rate, rate)
-        for known, new, density, share in zip(
-            self._counts, fresh, self._densities, rates, strict=True
-        ):
+        for known, new, share in zip(self._densities, fresh, rates, strict=True):
             mix(known, new, share)
-            for row, out in zip(known, density, strict=True):
-                blurred_kernel(row, SIDE, out)
 
     def score(self, parts: Parts, scores: Array, counts: Array) -> None:
         """Add how much a pose explains."""
@@ -167,7 +165,7 @@ class Colours:
         colours = self._levels[1][grid].astype(np.intp) >> 3
         bins = lab_bins()[(colours[..., 0] << 10) + (colours[..., 1] << 5) + colours[..., 2]]
         limbs, near, far = self._densities
-        counts, beside = (c.sum(axis=1, keepdims=True) > 0 for c in self._counts[:2])
+        counts, beside = (c.any(axis=1, keepdims=True) for c in (limbs, near))
         person = (limbs * counts).sum(axis=0) / max(1, counts.sum())
         ground = 0.5 * (near * beside).sum(axis=0) / max(1, beside.sum()) + 0.5 * far[0]
         ratio = np.log((person + FLOOR) / (ground + FLOOR)).astype(np.float32)

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.markerless.kernels.colour import FLOOR, blurred_kernel
+from kinesphere.markerless.kernels.colour import FLOOR
 
 SIDE = 16
 """Bins along each of lightness, a and b."""
@@ -25,22 +25,16 @@ def lab_bins() -> NDArray[np.uint16]:
 
 
 def mix(known: NDArray[np.float32], new: NDArray[np.float32], rate: float) -> None:
-    """Let new counts, (n, n_bins), have a share in known ones; all where nothing was known."""
-    total = new.sum(axis=1, keepdims=True)
-    seen = total[:, 0] > 0
-    empty = seen & (known.sum(axis=1) == 0)
-    share = np.where(empty, 1.0, rate * seen)[:, None].astype(np.float32)
+    """Let new densities, (n, n_bins), have a share in known ones; all where nothing was known."""
+    seen = new.any(axis=1)
+    share = np.where(seen & ~known.any(axis=1), 1.0, rate * seen)[:, None].astype(np.float32)
     known *= 1 - share
-    known += share * new / np.maximum(total, 1)
+    known += share * new
 
 
 def change(now: NDArray[np.float32], then: NDArray[np.float32]) -> float:
-    """Return how much worse counted colours are explained by earlier ones, (n_bins,) each.
+    """Return how much worse a density of colours is explained by an earlier one, nats a pixel.
 
-    In nats a pixel: the Kullback-Leibler divergence of the two densities. 0 where nothing is
-    counted now.
+    The Kullback-Leibler divergence; 0 where nothing is seen now.
     """
-    density, earlier = np.empty_like(now), np.empty_like(now)
-    blurred_kernel(now, SIDE, density)
-    blurred_kernel(then, SIDE, earlier)
-    return max(0.0, float((density * np.log((density + FLOOR) / (earlier + FLOOR))).sum()))
+    return max(0.0, float((now * np.log((now + FLOOR) / (then + FLOOR))).sum()))
