@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from kinesphere.markerless.colours import SIDE, Colours, _nearest, lab_bins
+from kinesphere.markerless.colours import Colours, _nearest
 from kinesphere.markerless.eyes import colour_groups
 from kinesphere.markerless.fit import near_limbs
+from kinesphere.markerless.histograms import SIDE, change, lab_bins, mix
 from kinesphere.markerless.kernels.colour import blurred_kernel
 from kinesphere.markerless.kernels.lines import REACH, SAMPLES
 from kinesphere.markerless.pose import bind_pose, posed
@@ -44,6 +45,23 @@ def test_an_empty_histogram_stays_empty():
     out = np.ones(SIDE**3, dtype=np.float32)
     blurred_kernel(np.zeros(SIDE**3, dtype=np.float32), SIDE, out)
     assert (out == 0).all()
+
+
+def test_densities_change_from_nothing_to_all():
+    one, other = np.zeros((2, 1, SIDE**3), dtype=np.float32)
+    one[0, 700:708], other[0, 900:908] = 1 / 8, 1 / 8
+    assert change(one, one) == 0
+    assert change(np.zeros_like(one), one) == 0
+    # all of it where only the floor was
+    assert change(one, other) == pytest.approx(np.log(1 / 8 / 2e-5), abs=1e-3)
+    few = [change((1 - share) * one + share * other, one) for share in (0.01, 0.05, 0.3)]
+    assert 0 < few[0] < few[1] < few[2]
+
+
+def test_new_densities_have_their_share_and_all_of_what_was_unknown():
+    known = np.array([[0.5, 0.5], [0.2, 0.8], [0, 0], [0, 0]], dtype=np.float32)
+    mix(known, np.array([[0.75, 0.25], [0, 0], [0.25, 0.75], [0, 0]], dtype=np.float32), 0.1)
+    assert_allclose(known, [[0.525, 0.475], [0.2, 0.8], [0.25, 0.75], [0, 0]], atol=1e-6)
 
 
 def test_left_and_right_share_colours_and_unknown_limbs_do_not():
@@ -111,6 +129,75 @@ def test_ratios_ask_each_pixel_for_the_limb_nearest_to_it(whole, ring):
     assert np.median(by_limb[arm]) > 2
     assert np.median(by_limb[trunk & inside]) < 0.5
     assert (colours.ratios(Parts(np.full_like(parts.limbs, -1), parts.nearness), 20) == 0).all()
+
+
+ROOM, SKIN = (60, 90, 60), (180, 120, 100)
+
+
+def _seen(whole, ring):
+    """Return what a camera sees of the body: rim, parts, and an image of them."""
+    canvas = Canvas(view_of(ring(2)[0], 320), whole, 6)
+    points = whole.skinned(posed(whole.chain, bind_pose(whole.chain)))
+    parts = canvas.draw(points)
+    rim = canvas.rim(points, whole.normals(points), parts)
+    image = np.full((*parts.limbs.shape, 3), ROOM, dtype=np.uint8)
+    image[parts.limbs >= 0] = SKIN
+    return rim, parts, image
+
+
+def _gain(colours, image, parts):
+    """Return how much likelier what the limbs cover is theirs than background, nats a pixel."""
+    n = parts.limbs.max() + 1
+    scores, counts = np.zeros(n), np.zeros(n)
+    colours.look(image)
+    colours.score(parts, scores, counts)
+    return scores.sum() / counts.sum()
+
+
+@pytest.mark.slow
+def test_limbs_put_wrong_teach_nothing_while_the_light_stays(whole, ring):
+    rim, parts, image = _seen(whole, ring)
+    colours = Colours(colour_groups(whole.chain.limb_names), near_limbs(whole), 0.7)
+    colours.look(image)
+    colours.learn(rim, parts, 1.0)
+    skin = parts.limbs >= 0
+    before = np.median(colours.ratios(parts, 20)[skin])
+    # the limbs' place shows something else; the room is as it was
+    wrong = np.where((image == SKIN).all(axis=2)[..., None], (90, 60, 150), image)
+    colours.look(wrong.astype(np.uint8))
+    for _ in range(40):
+        colours.learn(rim, parts, 0.05)
+    colours.look(image)
+    assert np.median(colours.ratios(parts, 20)[skin]) == pytest.approx(before, abs=1e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("steps", [1, 40], ids=["at once", "slowly"])
+def test_limbs_are_learnt_anew_where_the_light_changes(whole, ring, steps):
+    rim, parts, image = _seen(whole, ring)
+    colours = Colours(colour_groups(whole.chain.limb_names), near_limbs(whole), 0.7)
+    colours.look(image)
+    colours.learn(rim, parts, 1.0)
+    before = _gain(colours, image, parts)
+    dim = (image * 0.5).astype(np.uint8)
+    assert _gain(colours, dim, parts) < 0.2 * before
+    for i in range(1, 81):
+        light = 1 - 0.5 * min(1.0, i / steps)
+        colours.look((image * light).astype(np.uint8))
+        colours.learn(rim, parts, 0.05)
+    assert _gain(colours, dim, parts) > 0.8 * before
+
+
+@pytest.mark.slow
+def test_a_view_without_background_has_no_witness_of_light(whole, ring):
+    rim, parts, image = _seen(whole, ring)
+    colours = Colours(colour_groups(whole.chain.limb_names), near_limbs(whole), 0.7)
+    colours.look(image)
+    colours.learn(rim, parts, 1.0)
+    before = _gain(colours, image, parts)
+    full = Parts(np.zeros_like(parts.limbs), parts.nearness)
+    colours.learn(rim, full, 0.05)
+    assert _gain(colours, image, parts) == pytest.approx(before, abs=1e-9)
 
 
 def test_every_pixel_belongs_to_its_nearest_limb(rng):

@@ -1,13 +1,12 @@
 """Evidence from colours: of limbs, of what lies beside them, of the rest of the room."""
 
-from functools import cache
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Mask
 from kinesphere.markerless.evidence import MOST, STRIDE, Levels
+from kinesphere.markerless.histograms import SIDE, change, lab_bins, mix
 from kinesphere.markerless.kernels.colour import (
     FLOOR,
     blurred_kernel,
@@ -20,23 +19,11 @@ from kinesphere.markerless.kernels.lines import SAMPLES
 from kinesphere.markerless.kernels.region import log_ratios_kernel, region_score_kernel
 from kinesphere.markerless.rim import Parts, Rim, around
 
-SIDE = 16
-"""Bins along each of lightness, a and b."""
-_AB = 64.0  # a and b beyond this share the last bin: nothing in a room is more colourful
 _MARGIN = 20
 """px around the model in which a person is looked for."""
+_CHANGED = 0.02
+"""nats a pixel; from which on the light has changed so much that limbs are learnt in full."""
 _NOTHING = np.zeros((2, 2, 3), dtype=np.uint8)
-
-
-@cache
-def lab_bins() -> NDArray[np.uint16]:
-    """Return the histogram bin of five bits each of red, green and blue, (32768,)."""
-    steps = (np.arange(32) * 8 + 4).astype(np.uint8)
-    colours = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1)
-    lab = cv2.cvtColor(colours.reshape(1, -1, 3).astype(np.float32) / 255, cv2.COLOR_RGB2LAB)[0]
-    lightness = np.clip(lab[:, 0] / 100 * SIDE, 0, SIDE - 1).astype(int)
-    ab = np.clip((lab[:, 1:] + _AB) / (2 * _AB) * SIDE, 0, SIDE - 1).astype(int)
-    return np.asarray((lightness * SIDE + ab[:, 0]) * SIDE + ab[:, 1], dtype=np.uint16)
 
 
 class Colours:
@@ -47,12 +34,13 @@ class Colours:
     ) -> None:
         n = int(groups.max()) + 1
         self._groups, self._near_limbs, self._local = groups, near_limbs, local
-        self._counts = [
+        self._densities = [
             np.zeros((n, SIDE**3), dtype=np.float32),
             np.zeros((n, SIDE**3), dtype=np.float32),
             np.zeros((1, SIDE**3), dtype=np.float32),
         ]
-        self._densities = [np.zeros_like(counts) for counts in self._counts]
+        self._witness = np.zeros((1, SIDE**3), dtype=np.float32)
+        """Background in the light in which the limbs were learnt."""
         self._levels = Levels(_NOTHING)
         self._seeing = False
 
@@ -111,8 +99,14 @@ class Colours:
         return out
 
     def learn(self, rim: Rim, parts: Parts, rate: float) -> None:
-        """Mix the colours of the present pose into those known."""
-        fresh = [np.zeros_like(counts) for counts in self._counts]
+        """Mix the colours of the present pose into those known.
+
+        Limbs wear what they wear: theirs change with the light, which the background tells of
+        wherever the pose is. They are learnt as far as it has changed since; what lies beside
+        them is learnt always, as they move. Learnt in every frame, a sleeve put wrong becomes
+        right by and by.
+        """
+        fresh = [np.zeros_like(counts) for counts in self._densities]
         image, bins = self._levels[1], lab_bins()
         count_lines_kernel(
             rim.pixels,
@@ -130,15 +124,16 @@ class Colours:
             fresh[1],
         )
         count_far_kernel(parts.limbs, image, bins, 4, fresh[2][0])
-        for known, new, density in zip(self._counts, fresh, self._densities, strict=True):
-            total = new.sum(axis=1, keepdims=True)
-            seen = total[:, 0] > 0
-            empty = seen & (known.sum(axis=1) == 0)
-            share = np.where(empty, 1.0, rate * seen)[:, None].astype(np.float32)
-            known *= 1 - share
-            known += share * new / np.maximum(total, 1)
-            for row, out in zip(known, density, strict=True):
-                blurred_kernel(row, SIDE, out)
+        for counts in fresh:
+            for row in counts:
+                blurred_kernel(row, SIDE, row)
+        limb_rate = rate
+        if rate < 1:
+            limb_rate *= min(1.0, change(fresh[2], self._witness) / _CHANGED)
+        mix(self._witness, fresh[2], limb_rate)
+        rates = (limb_rate, rate, rate)
+        for known, new, share in zip(self._densities, fresh, rates, strict=True):
+            mix(known, new, share)
 
     def score(self, parts: Parts, scores: Array, counts: Array) -> None:
         """Add how much a pose explains."""
@@ -170,7 +165,7 @@ class Colours:
         colours = self._levels[1][grid].astype(np.intp) >> 3
         bins = lab_bins()[(colours[..., 0] << 10) + (colours[..., 1] << 5) + colours[..., 2]]
         limbs, near, far = self._densities
-        counts, beside = (c.sum(axis=1, keepdims=True) > 0 for c in self._counts[:2])
+        counts, beside = (c.any(axis=1, keepdims=True) for c in (limbs, near))
         person = (limbs * counts).sum(axis=0) / max(1, counts.sum())
         ground = 0.5 * (near * beside).sum(axis=0) / max(1, beside.sum()) + 0.5 * far[0]
         ratio = np.log((person + FLOOR) / (ground + FLOOR)).astype(np.float32)

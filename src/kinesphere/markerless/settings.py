@@ -61,8 +61,9 @@ class TrackSettings:
         source=_TRIED,
     )  # fmt: skip
     learning: float = setting(
-        0.05, "how much of the colours is renewed in each frame", low=0.0, high=1.0, source=_TRIED
-    )
+        0.05, "how much of the colours is renewed in each frame; of limbs, as far as the light has "
+        "changed", low=0.0, high=1.0, source=_TRIED,
+    )  # fmt: skip
     data_weight: float = setting(
         0.05, "weight of a line, as neighbouring lines say the same", low=1e-4, high=1.0,
         source=_TRIED,
