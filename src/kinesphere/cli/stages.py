@@ -171,12 +171,11 @@ def _parameterization(_: dict[str, Any], summary: dict[str, Any]) -> str:
     }
     told = ", ".join(f"{n} {said.get(str(s), str(s))}" for s, n in sources.most_common())
     n_axes = sum(joint["n_axes"] for joint in summary["joint_findings"])
+    if not told:
+        return "no joints, so no axes"
     axes = "1 axis" if n_axes == 1 else f"{n_axes} axes"
-    return (
-        (f"{axes}, joints: {told}; " if told else "no joints, so no axes; ")
-        + f"{counted(len(summary['limbs']), 'limb')} rebuilt to "
-        + f"{_mm(summary['rebuilt_residual_rms_mm'])} rms"
-    )
+    rebuilt = f"{counted(len(summary['limbs']), 'limb')} rebuilt to "
+    return f"{axes}, joints: {told}; {rebuilt}{_mm(summary['rebuilt_residual_rms_mm'])} rms"
 
 
 def _mm(value: float) -> str:

@@ -68,6 +68,7 @@ def normalized_somehow(
         turned, front = _facing_an_axis(motion, settings)
         step = Step(
             "front",
+            findings={"facing": front},
             warnings=(
                 f"the body has no front of its own, so it faces the world's {front}: its frames "
                 "and the signs of its angles mean nothing beyond this recording "

@@ -132,8 +132,8 @@ def shaken(names: Names, forest: Forest, count_confidence: float) -> Names:
     account = names.account | {"bodies_confidence": round(tree * count, 3)}
     doubt = names.doubt
     if sure < GIVEN:
-        tree = next(tree for tree in forest.trees if tree[0] in names.limbs)
-        return _withheld(replace(names, confidence=sure, account=account), tree)
+        of_names = next(bodies for bodies in forest.trees if bodies[0] in names.limbs)
+        return _withheld(replace(names, confidence=sure, account=account), of_names)
     if sure < EVEN:
         told = (
             f"the names of limbs are about as likely wrong as right (confidence {sure:.2f}): check "
