@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from kinesphere.data import Step
 from kinesphere.errors import BadRecording
-from kinesphere.pipeline import solve
+from kinesphere.pipeline import settings_from, solve
+from kinesphere.pipeline.motion_alone import _with_names_doubted
 from kinesphere.synthetic import make_performance
 
 
@@ -56,3 +58,50 @@ def test_axes_of_a_body_of_another_size_are_doubted(performance, solution):
     assert not [w for w in mine.warnings if "one person only" in w]
     other = solve(scaled(performance.recording, 1.15), calibration_from=solution)
     assert any("limbs differ by 15% (median)" in w for w in other.warnings)
+
+
+# --- names of a body that never stands ---
+
+
+@pytest.fixture
+def doubted(solution):
+    """Return the warnings about names for a body that found names and whose trunk leans so far."""
+
+    def told(tilt, sure=0.7):
+        terms = {} if tilt is None else {"trunk_tilt_deg": tilt}
+        motion = replace(
+            solution.motion,
+            history=(
+                Step("discovery", findings={"names_confidence": sure}),
+                Step("normalization", findings={"terms": terms}),
+            ),
+        )
+        after = _with_names_doubted(motion)
+        return [w for step in after.history for w in step.warnings]
+
+    return told
+
+
+def test_names_of_a_body_that_never_stands_are_doubted(doubted):
+    (told,) = doubted(96.0)
+    assert "never stands like a person (its trunk is 96 deg off upright" in told
+    assert doubted(170.0)
+
+
+def test_who_stands_sits_or_has_no_names_is_not_doubted(doubted):
+    assert not doubted(20.0)
+    assert not doubted(None)
+    assert not doubted(96.0, sure=None)
+
+
+def test_a_person_who_only_lies_is_told_that_names_from_motion_may_be_wrong():
+    """The same movements with the world turned under them; a model's labels are not in doubt."""
+    performance = make_performance(np.random.default_rng(7), rate=25, calibration_s=40, free_s=10)
+    recording = performance.recording
+    lying = np.array(recording.markers)[..., [1, 0, 2]] * [1.0, -1.0, 1.0]  # about z, by 90 deg
+    alone = replace(recording, markers=lying)
+    settings = settings_from({"orientation": {"up": "+y"}})
+    solved = solve(alone, "none", settings=settings)
+    assert sum("never stands like a person" in w for w in solved.warnings) == 1
+    standing = solve(recording, "none")
+    assert not any("never stands" in w for w in standing.warnings)

@@ -87,3 +87,21 @@ def test_sparse_markers_of_a_person_give_the_tree_and_no_wrong_name(recordings, 
     assert {"left_hip", "right_hip", "left_knee", "right_knee", "neck", "lumbar"} <= {
         joint.name for joint in found.model.joints
     }
+
+
+def test_names_of_half_a_recording_are_told_as_likely_only(recordings):
+    """Two of them are wrong: the head would be called trunk, a foot shank."""
+    recording = match_labels(read(recordings / "cmu41" / "02_05.c3d"), built_in_model("cmu41"))
+    hidden = replace(
+        recording,
+        markers=recording.markers[recording.n_frames // 2 :],
+        residuals=None,
+        outputs=(),
+        analog=None,
+        labels=tuple(f"*{i}" for i in range(recording.n_markers)),
+    )
+    found = discover(hidden)
+    assert all(segment.name.startswith("limb_") for segment in found.model.segments)
+    assert found.step.findings["names_confidence"] is None
+    assert set(found.step.findings["names_from"]["likely_names"].values()) >= {"trunk", "pelvis"}
+    assert any("too unsure to be given" in warning for warning in found.step.warnings)

@@ -60,14 +60,15 @@ def show_solution(summary: dict[str, Any], solution: Solution) -> None:
         for stage in summary["stages"]
     ]
     print_table(console, ("stage", "what was found", "took"), rows, "llr")
-    print_title(console, "Joints")
-    print_table(
-        console,
-        ("joint", "residual", "range", "centre", "axes", "angles 5–95 %", "twist"),
-        [_joint_cells(row) for row in joint_rows(solution)],
-        "lrrllrr",
-        doubtful=("undetermined",),
-    )
+    if solution.skeleton.joints:
+        print_title(console, "Joints")
+        print_table(
+            console,
+            ("joint", "residual", "range", "centre", "axes", "angles 5–95 %", "twist"),
+            [_joint_cells(row) for row in joint_rows(solution)],
+            "lrrllrr",
+            doubtful=("undetermined",),
+        )
     if summary["warnings"]:
         print_title(console, "Warnings")
         print_warnings(console, summary["warnings"], names_of(solution.skeleton))

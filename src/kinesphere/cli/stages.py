@@ -53,15 +53,20 @@ def _labelling(found: dict[str, Any], summary: dict[str, Any]) -> str:
 
 def _discovery(found: dict[str, Any], summary: dict[str, Any]) -> str:
     trees, n_loose = found.get("trees", 1), len(found.get("loose", ()))
-    text = f"{found.get('bodies_found')} bodies from motion alone"
+    text = f"{_bodies(found.get('bodies_found'))} from motion alone"
     if trees > 1:
-        text += f" in {trees} trees"
+        text += f" in {counted(trees, 'tree')}"
     named = sum(not limb.startswith("limb_") for limb in summary["limbs"])
     sure = found.get("names_confidence")
-    text += f"; {named} limbs named" + ("" if sure is None else f" (confidence {sure:.2f})")
+    text += f"; {counted(named, 'limb')} named" if named else "; no limb named"
+    text += "" if sure is None else f" (confidence {sure:.2f})"
     if n_loose:
-        text += f"; {n_loose} markers loose"
+        text += f"; {counted(n_loose, 'marker')} loose"
     return text
+
+
+def _bodies(n: object) -> str:
+    return "1 body" if n == 1 else f"{n} bodies"
 
 
 def _orientation(found: dict[str, Any], _: dict[str, Any]) -> str:
@@ -72,7 +77,7 @@ def _orientation(found: dict[str, Any], _: dict[str, Any]) -> str:
 def _scene(found: dict[str, Any], summary: dict[str, Any]) -> str:
     cameras = found.get("cameras", [])
     return (
-        f"{len(cameras)} cameras ({', '.join(map(str, cameras[:4]))}"
+        f"{counted(len(cameras), 'camera')} ({', '.join(map(str, cameras[:4]))}"
         f"{', …' if len(cameras) > 4 else ''}), {counted(summary['n_frames'], 'frame')} at "
         f"{summary['rate_hz']:g} Hz; {found.get('unit')}, up was {found.get('up')}"
     )
@@ -99,7 +104,8 @@ def _tracking_result(found: dict[str, Any], _: dict[str, Any]) -> str:
         text += f", overlap {overlap:.2f}"
     if lost:
         worst = max(lost, key=lambda name: lost[name])
-        return text + f"; {len(lost)} limbs lost at times, most {worst} ({lost[worst]} frames)"
+        frames = counted(lost[worst], "frame")
+        return text + f"; {counted(len(lost), 'limb')} lost at times, most {worst} ({frames})"
     return text + "; no limb lost"
 
 
@@ -116,11 +122,13 @@ def source_in_words(source: object) -> str:
 def _skeleton(_: dict[str, Any], summary: dict[str, Any]) -> str:
     joints = summary["joint_findings"]
     kinds = Counter(joint["observability"] for joint in joints)
-    counted = ", ".join(f"{n} {kind}" for kind, n in kinds.most_common())
+    told = ", ".join(f"{n} {kind}" for kind, n in kinds.most_common())
+    limbs = counted(len(summary["limbs"]), "limb")
     known = [joint for joint in joints if np.isfinite(joint["residual_mm"])]
     text = (
-        f"{len(summary['limbs'])} limbs fit to {_mm(summary['limb_residual_rms_mm'])} rms; "
-        f"{len(joints)} joint centres: {counted}"
+        f"{limbs} {'fits' if limbs == '1 limb' else 'fit'} to "
+        f"{_mm(summary['limb_residual_rms_mm'])} rms; "
+        + (f"{counted(len(joints), 'joint centre')}: {told}" if joints else "no joints")
     )
     if known:
         worst = max(known, key=lambda joint: joint["residual_mm"])
@@ -135,7 +143,7 @@ def _normalization(found: dict[str, Any], _: dict[str, Any]) -> str:
         n = found.get("n_frames_averaged", 1)
         parts.append(
             f"default position at {number_in_words(found['default_time_s'], 's')}, "
-            f"{n} {'frame' if n == 1 else 'frames'} averaged"
+            f"{counted(n, 'frame')} averaged"
         )
     if isinstance(found.get("facing"), dict):
         decided = str(found["facing"].get("decided_by"))
@@ -161,12 +169,13 @@ def _parameterization(_: dict[str, Any], summary: dict[str, Any]) -> str:
         "reused": "of another recording",
         "given": "given",
     }
-    counted = ", ".join(f"{n} {said.get(str(s), str(s))}" for s, n in sources.most_common())
+    told = ", ".join(f"{n} {said.get(str(s), str(s))}" for s, n in sources.most_common())
     n_axes = sum(joint["n_axes"] for joint in summary["joint_findings"])
-    return (
-        f"{n_axes} axes, joints: {counted}; limbs rebuilt to "
-        f"{_mm(summary['rebuilt_residual_rms_mm'])} rms"
-    )
+    if not told:
+        return "no joints, so no axes"
+    axes = "1 axis" if n_axes == 1 else f"{n_axes} axes"
+    rebuilt = f"{counted(len(summary['limbs']), 'limb')} rebuilt to "
+    return f"{axes}, joints: {told}; {rebuilt}{_mm(summary['rebuilt_residual_rms_mm'])} rms"
 
 
 def _mm(value: float) -> str:

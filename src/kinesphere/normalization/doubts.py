@@ -4,7 +4,8 @@ from kinesphere.normalization.settings import NormalizationSettings
 
 _TOLERATED = 2.0  # times the deviation that costs 1
 _FLAT = 0.7  # times the plane distance that costs 1; who stands stays below half of that
-_LYING = 60.0  # deg of tilt from which a trunk lies rather than leans
+LYING = 60.0
+"""deg of tilt from which a trunk lies rather than leans."""
 _UPSIDE_DOWN = 120.0  # deg
 _SLIM = 0.6  # short over long side of the rectangle around the joints of somebody who stands
 
@@ -29,7 +30,7 @@ def doubts(
     tilt = terms.get("trunk_tilt_deg", 0.0)
     if tilt > _UPSIDE_DOWN:
         reasons.append(f"the body is upside down (trunk {tilt:.0f} deg from upright)")
-    elif tilt > _LYING:
+    elif tilt > LYING:
         reasons.append(f"the body lies (trunk {tilt:.0f} deg from upright)")
     elif tilt > _TOLERATED * settings.trunk_tilt:
         reasons.append(f"the trunk leans by {tilt:.0f} deg")
@@ -43,7 +44,7 @@ def doubts(
         reasons.append(f"the joints are {distance:.0f} mm off their plane")
     if (found := terms.get("speed_mm_per_s", 0.0)) > _TOLERATED * speed:
         reasons.append(f"the body moves at {found:.0f} mm/s")
-    slim = settings.template == "standing" and tilt <= _LYING
+    slim = settings.template == "standing" and tilt <= LYING
     if slim and (ratio := terms.get("rectangle_ratio", 0.0)) > _SLIM:
         reasons.append(f"the body is {ratio:.2f} times as wide as tall")
     return tuple(reasons)

@@ -73,9 +73,12 @@ def propose_bodies(
             needs="four joints",
             warnings=warnings,
         )
+    told = {0: "no joint tells", 1: "1 joint does not tell"}.get(
+        n_joints, f"{n_joints} joints do not tell"
+    )
     if facing is None or facing[0] not in "+-" or facing[-1] == "y":
         raise DegenerateMotion(
-            f"{n_joints} joints do not tell the body's axes: it takes a pair of shoulders or hips "
+            f"{told} the body's axes: it takes a pair of shoulders or hips "
             "named left and right, or four joints, or a level facing such as '+x'"
         )
     body = lateral_frames(np.cross(vector_from_direction(facing), UP)[None], UP[None])
@@ -85,10 +88,7 @@ def propose_bodies(
         named=False,
         needs="the root limb",
         only_best=True,
-        warnings=(
-            f"{n_joints} joints do not tell the body's axes; they are those of the world, facing "
-            f"{facing}",
-        ),
+        warnings=(f"{told} the body's axes; they are those of the world, facing {facing}",),
     )
 
 

@@ -7,6 +7,7 @@ from kinesphere.data import Motion, Recording, Step, TopologicalModel
 from kinesphere.errors import AmbiguousFacing, BadRecording, DegenerateMotion
 from kinesphere.labelling import find_subjects
 from kinesphere.normalization import Facing, NormalizationSettings, normalize
+from kinesphere.normalization.doubts import LYING
 from kinesphere.pipeline.choice import why_no_model
 from kinesphere.skeleton import DiscoverySettings, SkeletonSettings, discover
 
@@ -52,6 +53,7 @@ def normalized_somehow(
     """Normalize a motion that may have neither front nor enough joints for a body frame.
 
     Where nothing tells a front and nobody said one, the body faces an axis of the world, aloud.
+    Where motion alone gave a person's names and the body never stands, the names are doubted.
 
     Raises
     ------
@@ -59,13 +61,14 @@ def normalized_somehow(
         If the facing that was asked for does not help, or none does.
     """
     try:
-        return normalize(motion, settings, facing)
+        return _with_names_doubted(normalize(motion, settings, facing))
     except (AmbiguousFacing, DegenerateMotion) as missing:
         if facing is not None:
             raise
         turned, front = _facing_an_axis(motion, settings)
         step = Step(
             "front",
+            findings={"facing": front},
             warnings=(
                 f"the body has no front of its own, so it faces the world's {front}: its frames "
                 "and the signs of its angles mean nothing beyond this recording "
@@ -73,7 +76,32 @@ def normalized_somehow(
             ),
             version=__version__,
         )
-        return replace(turned, history=(*turned.history, step))
+        return _with_names_doubted(replace(turned, history=(*turned.history, step)))
+
+
+def _with_names_doubted(motion: Motion) -> Motion:
+    """Return the motion; with a warning where limbs are called a person's that never stands.
+
+    Proportions and size of some animals are a person's; how they stand is not. Bent knees, arms
+    held out or a body that moves say nothing: people at work or walking do that.
+    """
+    found = {step.name: step.findings for step in motion.history}
+    named = found.get("discovery", {}).get("names_confidence") is not None
+    terms = found.get("normalization", {}).get("terms")
+    tilt = terms.get("trunk_tilt_deg") if isinstance(terms, dict) else None
+    if not named or not isinstance(tilt, int | float) or tilt <= LYING:
+        return motion
+    step = Step(
+        "posture",
+        findings={"trunk_tilt_deg": tilt},
+        warnings=(
+            "the limbs are named as a person's, but the body never stands like a person (its trunk "
+            f"is {tilt:.0f} deg off upright at best): of an animal the names are wrong, of "
+            "somebody who lies they are to be checked",
+        ),
+        version=__version__,
+    )
+    return replace(motion, history=(*motion.history, step))
 
 
 def _facing_an_axis(motion: Motion, settings: NormalizationSettings) -> tuple[Motion, Facing]:

@@ -38,10 +38,20 @@ def test_names_are_as_sure_as_proportions_say_where_nothing_else_is_in_doubt():
     ("edges", "count"), [((0.0, 0.5, 0.5), 0.9), ((0.5, 0.0, 0.5), 0.9), ((0.5, 0.5, 0.5), 0.0)]
 )
 def test_half_is_left_where_another_tree_or_number_would_do_as_well(edges, count):
-    doubted = shaken(names(), forest(*edges), count)
-    assert doubted.confidence == pytest.approx(0.45)
+    doubted = shaken(names(0.95), forest(*edges), count)
+    assert doubted.confidence == pytest.approx(0.475)
     assert doubted.limbs == LIMBS
-    assert "as likely wrong as right (confidence 0.45)" in doubted.doubt
+    assert "as likely wrong as right (confidence 0.47)" in doubted.doubt
+
+
+def test_names_too_unsure_are_told_but_not_given():
+    doubted = shaken(names(0.8), forest(0.0, 0.5, 0.5), 0.9)
+    assert not doubted.given
+    assert doubted.limbs == {0: "limb_01", 1: "limb_02", 2: "limb_03", 3: "limb_04"}
+    assert doubted.doubt.endswith("(confidence 0.40): limbs are numbered; likely were limb_01 "
+                                  "trunk, limb_02 head")  # fmt: skip
+    assert doubted.account["likely_names"] == {"limb_01": "trunk", "limb_02": "head"}
+    assert doubted.account["person"] is False
 
 
 def test_where_no_name_is_given_nothing_is_shaken():

@@ -1,0 +1,49 @@
+"""What the terminal says of a stage: numbers agree with their nouns, nothing is left empty."""
+
+import numpy as np
+import pytest
+
+from kinesphere.cli.stages import stage_in_words
+
+JOINT = {"name": "left_knee", "observability": "hinge", "residual_mm": 2.0, "axes_from": "movement"}
+
+
+def words(name, limbs, joints, **found):
+    summary = {
+        "limbs": limbs,
+        "limb_residual_rms_mm": 220.0,
+        "rebuilt_residual_rms_mm": 3.0,
+        "joint_findings": joints,
+    }
+    return stage_in_words({"name": name, "settings": {}, "findings": found}, summary)
+
+
+def test_a_single_body_without_joints_has_words():
+    limbs = ["limb_01"]
+    found = {"bodies_found": 1, "trees": 1, "names_confidence": None, "loose": ["*3"]}
+    told = words("discovery", limbs, [], **found)
+    assert told == "1 body from motion alone; no limb named; 1 marker loose"
+    assert words("skeleton", limbs, []) == "1 limb fits to 220 mm rms; no joints"
+    assert words("parameterization", limbs, []) == "no joints, so no axes"
+
+
+def test_one_joint_and_several():
+    one = [{**JOINT, "n_axes": 1}]
+    told = words("skeleton", ["trunk", "head"], one)
+    assert told.startswith("2 limbs fit to 220 mm rms; 1 joint centre: 1 hinge; apart 2 mm")
+    told = words("parameterization", ["trunk", "head"], one)
+    assert told == "1 axis, joints: 1 by their own movements; 2 limbs rebuilt to 3 mm rms"
+    two = [{**JOINT, "n_axes": 2}, {**JOINT, "n_axes": 1, "residual_mm": np.nan}]
+    assert "2 joint centres: 2 hinge; " in words("skeleton", ["a", "b", "c"], two)
+    assert words("parameterization", ["a", "b", "c"], two).startswith("3 axes, joints: 2 by")
+
+
+@pytest.mark.parametrize(
+    ("named", "said"), [(1, "1 limb named (confidence 0.80)"), (2, "2 limbs named")]
+)
+def test_named_limbs_are_counted(named, said):
+    limbs = [*["trunk", "head"][:named], "limb_01"]
+    found = {"bodies_found": 3, "trees": 2, "names_confidence": 0.8, "loose": []}
+    assert f"3 bodies from motion alone in 2 trees; {said}" in words(
+        "discovery", limbs, [], **found
+    )
