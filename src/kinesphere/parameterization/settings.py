@@ -233,7 +233,9 @@ class AngleSettings:
     unwrap: bool = setting(
         False,
         "deliver angles and twists that run on beyond a half turn, for limbs that turn on and on, "
-        "instead of jumping from 180 to -180 deg; poses are the same",
+        "instead of jumping from 180 to -180 deg; poses are the same, but the size of a twist no "
+        "longer tells the branches apart: under soft tissue in swings of 140 deg a quarter of the "
+        "frames of a joint can be half a turn off",
     )
 
     def __post_init__(self) -> None:
