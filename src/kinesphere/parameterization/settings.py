@@ -123,7 +123,9 @@ class AxesSettings:
     )
     largest_uncertainty: float = setting(
         10.0,
-        "standard deviation of an axis, half of that angle, from which on the body's axis serves",
+        "standard deviation of an axis, half of that angle, from which on the body's axis serves; "
+        "of a hinge in free motion, elbow or knee, three times that, where its axis foretells the "
+        "movement clearly better than the body's",
         unit="deg",
         low=0.0,
         high=45.0,
