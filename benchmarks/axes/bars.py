@@ -16,6 +16,8 @@ class Bar:
     bar: float
     at_least: bool = False
     """True where more is better."""
+    beside: bool = False
+    """True where the figure was added later, to say more about one that was asked for."""
 
     @property
     def met(self) -> bool:
@@ -53,6 +55,7 @@ class Bar:
             "bar": self.bar,
             "at_least": self.at_least,
             "met": self.met,
+            "beside": self.beside,
         }
 
 

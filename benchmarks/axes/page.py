@@ -71,14 +71,17 @@ def page(found: dict[str, Any]) -> str:
 
 def scoreboard(bars: Sequence[Bar]) -> str:
     """Return what was asked for and whether it is there."""
-    met = sum(bar.met for bar in bars)
+    asked, beside = ([bar for bar in bars if bar.beside == late] for late in (False, True))
     lines = [
-        f"**{met} of {len(bars)} figures meet what is asked of them**, numbers that were set "
-        "before anything was measured here.\n",
+        f"**{sum(bar.met for bar in asked)} of {len(asked)} figures meet what is asked of them**, "
+        "numbers that were set before anything was measured here. Beside them stand "
+        f"{len(beside)} that were added later to tell what a figure consists of, or what more "
+        f"motion does, held to the same numbers ({sum(bar.met for bar in beside)} meet them).\n",
         "| | figure | measured | asked | |",
         "|---|---|---:|---:|---|",
     ]
     for bar in bars:
-        cells = (bar.section, bar.what, bar.measured, bar.asked, bar.verdict)
+        what = f"*beside:* {bar.what}" if bar.beside else bar.what
+        cells = (bar.section, what, bar.measured, bar.asked, bar.verdict)
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"

@@ -13,6 +13,7 @@ from kinesphere.geometry.skin import (
     has_one_axis,
     hinge_axis,
     joint_modes,
+    joint_turns,
     pose_weights,
     skin_noise,
 )
@@ -148,21 +149,44 @@ def test_the_centre_moves_with_the_parent(rng):
 
 def test_a_hinge_is_seen_and_its_centre_keeps_to_the_expectation_along_it(rng):
     turns = hinge_turns(np.deg2rad(60 - 60 * np.cos(np.linspace(0, 40, FRAMES))))
-    axis = hinge_axis(turns)
-    assert abs(axis @ [0.0, 0.6, 0.8]) == pytest.approx(1.0, abs=1e-9)
     view = view_of(*seen(rng, turns, noise=NOISE))
+    axis = hinge_axis(view, 3.0)
+    assert abs(axis @ [0.0, 0.6, 0.8]) == pytest.approx(1.0, abs=1e-4)
     expected = CENTRE + 0.03 * axis
     fit = fit_centre(view, expected, 0.1, hidden=3.0, hinge=axis)
     off = fit.centre - CENTRE
     assert off @ axis == pytest.approx(0.03, abs=2e-3)
     assert np.linalg.norm(off - (off @ axis) * axis) < 1e-3
+    # nothing was measured along it: the expectation is what is known
+    assert np.sqrt(axis @ fit.covariance @ axis) == pytest.approx(0.1, rel=1e-6)
+
+
+@pytest.mark.parametrize("across", [6.0, 12.0])
+def test_a_hinge_that_turns_about_a_second_axis_is_measured_along_its_first(rng, across):
+    t = np.linspace(0, 40, FRAMES)
+    second = np.deg2rad(across) * np.sin(0.7 * t)[:, None] * np.array([1.0, 0.0, 0.0])
+    bends = hinge_turns(np.deg2rad(60 - 60 * np.cos(t)))
+    view = view_of(*seen(rng, bends @ rotation_exp(second), noise=NOISE))
+    axis = np.array([0.0, 0.6, 0.8])
+    assert hinge_axis(view, 3.0) is None
+    fit = fit_centre(view, CENTRE + 0.03 * axis, 0.1, hidden=3.0, hinge=axis)
+    assert abs((fit.centre - CENTRE) @ axis) < 3e-3
+
+
+def test_an_axis_that_is_not_the_hinges_says_nothing_of_the_place_along_it(rng):
+    turns = hinge_turns(np.deg2rad(60 - 60 * np.cos(np.linspace(0, 40, FRAMES))))
+    view = view_of(*seen(rng, turns, noise=NOISE))
+    axis, other = np.array([0.0, 0.6, 0.8]), np.array([0.0, -0.8, 0.6])
+    fit = fit_centre(view, CENTRE + 0.03 * axis, 0.1, hidden=3.0, hinge=other)
+    assert np.sqrt(axis @ fit.covariance @ axis) > 0.09
 
 
 def test_a_ball_joint_has_no_single_axis(rng):
     turns = ball_turns(rng)
-    assert not has_one_axis(joint_modes(turns))
-    assert hinge_axis(turns) is None
-    assert hinge_axis(np.broadcast_to(np.eye(3), (5, 3, 3))) is None
+    assert not has_one_axis(joint_turns(turns), np.inf)
+    assert hinge_axis(view_of(*seen(rng, turns)), 3.0) is None
+    few = view_of(*seen(rng, turns[:5]))
+    assert hinge_axis(few, 3.0) is None
 
 
 def test_poses_count_alike_however_long_they_are_held():

@@ -96,6 +96,18 @@ def test_a_count_that_is_none_is_named(wrong):
         AxesSettings(counts=wrong)
 
 
+@pytest.mark.parametrize("twice", ["elbow=2,elbow=1", "elbow=2, elbow=2"])
+def test_a_count_given_twice_is_told(twice):
+    with pytest.raises(BadSetting, match="counts names elbow twice"):
+        AxesSettings(counts=twice)
+    assert AxesSettings(counts="elbow=2, left_elbow=1")  # one side may differ
+
+
+def test_a_window_given_twice_is_told():
+    with pytest.raises(BadSetting, match="windows names hip twice"):
+        AxesSettings(windows="hip=0:3, hip=5:8")
+
+
 def test_settings_are_addressed_by_group_and_key():
     settings = ParameterizationSettings(axes=AxesSettings(method="direction-joining"))
     listed = settings.as_json()

@@ -251,3 +251,46 @@ def test_noise_of_standing_never_buys_a_change_of_branch(rng, unwrap):
         )
         found = solved.angles[:, :2] if unwrap else solved.angles
         assert wrong(found, truth[:, 1:] if unwrap else truth) == 0
+
+
+@pytest.mark.parametrize("axes_told", [2, 3])
+def test_after_a_gap_the_angles_are_not_half_a_turn_off(rng, axes_told):
+    n, rate = 600, 50.0
+    settings = AngleSettings(unwrap=axes_told == 2)
+    for _ in range(20):
+        axes, rest, long_axis = draw_joint(rng, 80)
+        truth = smooth(rng, n, [60, 60, 90])
+        if axes_told == 3:
+            axes = np.array([rest @ long_axis, *axes])
+            truth = truth[:, [2, 0, 1]]
+            rotations = joint_rotations(axes, rest, long_axis, truth, np.zeros(n))
+        else:
+            rotations = joint_rotations(axes, rest, long_axis, truth[:, :2], truth[:, 2])
+        for start in rng.integers(0, n - 40, 3):
+            rotations[start : start + 40] = np.nan
+        solved = solve_angles(
+            rotations, axes, rest, long_axis, np.ones(n, bool), settings, TwistSettings(), rate
+        )
+        seen = np.isfinite(solved.angles[:, 0])
+        assert seen.mean() > 0.7
+        assert wrong(solved.angles[seen, :axes_told], truth[seen, :axes_told]) == 0
+
+
+def test_one_mistaken_at_a_singularity_finds_back_where_angles_run_on(rng):
+    n, rate, shares = 600, 50.0, []
+    for _ in range(20):
+        axes, rest, long_axis = draw_joint(rng, 80)
+        truth = smooth(rng, n, [140, 60, 30])
+        rotations = joint_rotations(axes, rest, long_axis, truth[:, :2], truth[:, 2])
+        solved = solve_angles(
+            shaken(rng, rotations, 3.0),
+            axes,
+            rest,
+            long_axis,
+            np.ones(n, bool),
+            AngleSettings(unwrap=True),
+            TwistSettings(),
+            rate,
+        )
+        shares.append(wrong(solved.angles[:, :2], truth[:, :2]))
+    assert max(shares) < 0.1  # 12 % where only the whole path is mirrored

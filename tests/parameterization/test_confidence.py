@@ -5,6 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from kinesphere.parameterization.axes import find_axes
+from kinesphere.parameterization.axes.fit import phase_swing
 from kinesphere.parameterization.confidence import (
     assess_axes,
     contradiction,
@@ -90,3 +91,13 @@ def test_halves_that_contradict_each_other_enough_end_the_comparing(rng, calibra
     seen.clear()
     assert assess_axes(samples, axes, find, 2.0).halves.max() == most
     assert len(seen) == asked
+
+
+def test_conditioning_tells_how_many_times_larger_the_rotation_is(rng, calibration):
+    samples, _ = alternating(rng, calibration)
+    quality = assess_axes(samples, search(samples)[1], lambda s: search(s)[1])
+    swings = [phase_swing(samples, phase).vectors for phase in samples.phases]
+    for k, told in enumerate(quality.conditioning):
+        mine = [v for v, at in zip(swings, quality.labels, strict=True) if at == k]
+        sizes = np.linalg.svd(np.concatenate(mine), compute_uv=False)  # rad, not rad²
+        assert told == pytest.approx(sizes[0] / sizes[1])

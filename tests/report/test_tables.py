@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinesphere.data import PoseFlag, Step
+from kinesphere.data import JointFlag, PoseFlag, Step
 from kinesphere.report.axes_words import axes_in_detail
 from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
 
@@ -30,7 +30,7 @@ def with_joint(solution, index, **changes):
         ({"observability": "undetermined", "residual": 0.001, "axes_source": "movement"}, "poor"),
     ],
 )
-def test_trust_is_what_a_centre_rests_on(solution, changes, trust):
+def test_trust_is_what_centre_and_axes_rest_on(solution, changes, trust):
     assert joint_rows(with_joint(solution, 3, **changes))[3].trust == trust
 
 
@@ -58,18 +58,37 @@ def test_a_joint_row_tells_the_figures(solution):
     assert "singular" in row.flagged
 
 
+def test_loose_axes_and_limbs_out_of_reach_are_trusted_less(solution):
+    sure = {"observability": "determined", "residual": 0.001, "axes_source": "movement"}
+
+    def trust(uncertainty, unreachable=0.0):
+        told = with_joint(solution, 3, axes_uncertainty=np.deg2rad(uncertainty), **sure)
+        flags = np.array(told.parameters.flags)
+        flags[:, 3] = 0
+        flags[: round(unreachable * len(flags)), 3] = JointFlag.UNREACHABLE
+        return joint_rows(replace(told, parameters=replace(told.parameters, flags=flags)))[3].trust
+
+    n = solution.skeleton.joints[3].n_axes
+    assert trust([9.9] * n) == "good"
+    assert trust([np.nan] * n) == "good"
+    assert trust([2.0] * (n - 1) + [10.1]) == "fair"
+    assert trust([2.0] * n, unreachable=0.3) == "fair"
+    assert trust([2.0] * n, unreachable=0.02) == "good"
+
+
 def test_each_axis_tells_how_well_it_is_determined():
     told = {
         "axes_uncertainty_deg": [1.44, 0.52],
         "ranges_deg": [88.0, 91.6],
-        "conditioning": [840.6, 9.87],
+        "conditioning": [29.02, 3.14],
     }
     unsure = {"axes_uncertainty_deg": [None, 2.0], "ranges_deg": [None, 40.2], "conditioning": []}
     body = {"axes_uncertainty_deg": [None], "ranges_deg": [3.0], "conditioning": [1.2]}
     joints = {"left_hip": told, "left_elbow": unsure, "neck": body}
     history = (Step("parameterization", {}, {"joints": joints}, (), "0"),)
     assert axes_in_detail("left_hip", history) == (
-        "axis 1 ± 1.4°, over 88°, conditioning 841; axis 2 ± 0.5°, over 92°, conditioning 9.87"
+        "axis 1 ± 1.4°, over 88°, rotation 29 times larger than about others; "
+        "axis 2 ± 0.5°, over 92°, rotation 3.14 times larger than about others"
     )
     assert axes_in_detail("left_elbow", history) == "axis 2 ± 2.0°, over 40°"
     assert axes_in_detail("neck", history) == axes_in_detail("nobody", ()) == ""

@@ -19,6 +19,9 @@ CELL = np.deg2rad(10.0)
 """rad, poses nearer to each other than this count as one: soft tissue errs alike in both."""
 ALIGNED = 0.8
 """Least cosine between the axis of a hinge and the direction its motion knows least."""
+TURNED = 0.5
+"""Least cosine between the axis of a hinge and the one axis its limb turned about, which the motion
+tells better than the model does: knees are up to 43° from the line across their thigh's markers."""
 FIRM = 16.0
 """Information from the motion, in the expectation's units, above which a hinge is left to it."""
 FAR = 10.0
@@ -87,9 +90,10 @@ def fit_centre(
         How many times larger errors are that the fit absorbs (skin that moves with the pose) than
         those it leaves as residuals.
     hinge : (3,), optional
-        Direction of the axis of a joint known to have only one. Where the motion turns about one
-        axis, or knows the centre least along it, too, the expectation holds ``tighter`` times
-        tighter there: what residuals tell about that direction is how they were spoilt.
+        Direction of the axis of a joint known to have only one. Where the motion turns about no
+        other, or knows the centre least along it, too, the expectation holds ``tighter`` times
+        tighter there: what residuals tell about that direction is how they were spoilt. The
+        uncertainty along it is that of the expectation all the same.
     tighter
     rounds
         Most steps of the descent.
@@ -98,27 +102,32 @@ def fit_centre(
     x, algebraic = expected, sphere_centre(view.points, expected)
     if np.linalg.norm(algebraic - expected) < FAR * spread:
         x = min((expected, algebraic), key=lambda start: _cost(view, start))
-    prior = np.eye(3) / spread**2
+    plain = prior = np.eye(3) / spread**2
     x, information = _fit(view, x, expected, 0.01 * prior, hidden, rounds)
-    if hinge is not None and (along := _open_axis(view, information, spread, hinge)) is not None:
+    along = None if hinge is None else _open_axis(view, information, spread, hinge, hidden)
+    if along is not None:
         prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
     x, information = _fit(view, x, expected, prior, hidden, rounds)
+    if along is not None:  # what was not asked has told nothing
+        across = np.eye(3) - np.outer(along, along)
+        information = across @ information @ across
     return CentreFit(
         centre=x,
         noise=_robust_noise(view, x),
-        data_covariance=_inverse(information, prior, SILENT),
+        data_covariance=_inverse(information, plain, SILENT),
         prior=prior,
-        covariance=_inverse(information, prior, 1.0),
+        covariance=_inverse(information, plain, 1.0),
         n_poses=n_poses,
     )
 
 
-def _open_axis(view: View, information: Array, spread: float, hinge: Array) -> Array | None:
+def _open_axis(
+    view: View, information: Array, spread: float, hinge: Array, hidden: float
+) -> Array | None:
     """Return the direction in which a hinge's centre is left to its expectation, (3,)."""
-    if view.turning is not None and view.turning.skin is not None:
-        along = hinge_axis(view.turning.rotations)
-        if along is not None:
-            return along
+    turned = hinge_axis(view, hidden)
+    if turned is not None and abs(turned @ hinge) > TURNED:
+        return turned
     values, vectors = np.linalg.eigh(information)
     aligned = abs(vectors[:, 0] @ hinge) > ALIGNED
     return vectors[:, 0] if aligned and values[0] * spread**2 < FIRM else None

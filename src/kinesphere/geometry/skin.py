@@ -40,32 +40,59 @@ SETTLED = 1e-6
 """m, step that ends the fit."""
 
 
+def joint_turns(rotations: Array) -> Array:
+    """Return the joint's rotation away from its mean, rad; (n, 3, 3) → (n, 3)."""
+    turns = rotation_log(mean_rotation(rotations).T @ rotations)
+    centred: Array = turns - turns.mean(axis=0)
+    return centred
+
+
 def joint_modes(rotations: Array) -> Array:
     """Return the joint's rotation away from its mean, over its rms; (n, 3, 3) → (n, 3)."""
-    turns = rotation_log(mean_rotation(rotations).T @ rotations)
-    turns = turns - turns.mean(axis=0)
+    turns = joint_turns(rotations)
     modes: Array = turns / max(float(np.sqrt((turns**2).sum(axis=1).mean() / 3)), STILL)
     return modes
 
 
-def has_one_axis(modes: Array) -> bool:
-    """Return whether a joint turns about one axis alone, from its modes (n, 3)."""
-    spread = np.linalg.eigvalsh(modes.T @ modes)
-    return bool(spread[1] < ONE_AXIS * spread[2])
+def has_one_axis(turns: Array, blur: float) -> bool:
+    """Return whether a joint turns about one axis alone, from its turns (n, 3) rad.
 
-
-def hinge_axis(rotations: Array) -> Array | None:
-    """Return the one axis a joint turns about, (n, 3, 3) → (3,); None if it has more.
-
-    In the frame the rotations lead into. Fewer than `FEW` poses tell nothing.
+    Parameters
+    ----------
+    turns
+        As `joint_turns` returns them.
+    blur
+        rad², variance of the rotation that noise and skin can feign: what turns farther than that
+        about a second axis is a second axis, however small.
     """
-    r = rotations[np.isfinite(rotations).all(axis=(1, 2))]
-    if len(r) < FEW:
+    variances = np.linalg.eigvalsh(turns.T @ turns / len(turns))
+    return bool(variances[1] < min(ONE_AXIS * variances[2], blur))
+
+
+def feigned(view: View, hidden: float) -> float:
+    """Return the variance of a joint's rotation, rad², that noise and skin can feign at most."""
+    turning = view.turning
+    assert turning is not None
+    assert turning.skin is not None
+    assert turning.skin_seeing is not None
+    skin, noise = (turning.skin, turning.skin_seeing), (turning.pose, view.pose)
+    most = [float(np.linalg.eigvalsh(c[:3, :3])[-1]) for c in (*skin, *noise)]
+    return hidden**2 * (most[0] + most[1]) + most[2] + most[3]
+
+
+def hinge_axis(view: View, hidden: float) -> Array | None:
+    """Return the one axis a joint turns about, (3,); None if it has more.
+
+    In the frame of the seeing limb. Fewer than `FEW` poses tell nothing.
+    """
+    turning = view.turning
+    if turning is None or turning.skin is None or turning.known.sum() < FEW:
         return None
-    modes = joint_modes(r)
-    if not has_one_axis(modes):
+    r = turning.rotations[turning.known]
+    turns = joint_turns(r)
+    if not has_one_axis(turns, feigned(view, hidden)):
         return None
-    axis: Array = mean_rotation(r) @ np.linalg.eigh(modes.T @ modes)[1][:, 2]
+    axis: Array = mean_rotation(r) @ np.linalg.eigh(turns.T @ turns)[1][:, 2]
     return axis
 
 
@@ -140,9 +167,12 @@ def fit_through_skin(
     each pose would have if its markers moved `RIGID` times as far as `skin_noise` says. Residuals
     have a soft-L1 loss. The information reckons with ``hidden`` instead of `RIGID`.
 
-    A hinge tells nothing apart that is linear in its one angle: there skin is not modelled, its
-    information is ``hidden``² times less, and poses count alike however long they were held, so
-    that skin errs alike in trials that dwell elsewhere.
+    Errors that are not linear in the rotation stay, and no number of poses averages them out: as
+    everywhere, a look is worth 1/``hidden``² of what its residual says.
+
+    A hinge tells nothing apart that is linear in its one angle: there skin is not modelled, and
+    poses count alike however long they were held, so that skin errs alike in trials that dwell
+    elsewhere.
 
     Parameters
     ----------
@@ -165,11 +195,11 @@ def fit_through_skin(
     assert turning is not None
     assert turning.skin is not None
     assert turning.skin_seeing is not None
-    modes = joint_modes(turning.rotations[turning.known])
+    rotations = turning.rotations[turning.known]
+    modes, looks = joint_modes(rotations), looks / hidden**2
     share = np.full(len(modes), 1 / len(modes))
-    if has_one_axis(modes):
+    if has_one_axis(joint_turns(rotations), feigned(view, hidden)):
         modes, share = modes[:, :0], share * pose_weights(turning.back)
-        looks = looks / hidden**2
     skin = _Skin(modes, RIGID * _root(turning.skin_seeing), RIGID * _root(turning.skin))
     x, inner = start, turning.place(start).mean(axis=0)
     z = np.zeros(12 * modes.shape[1])

@@ -6,15 +6,15 @@ import numpy as np
 
 from kinesphere.data import Array, Mask
 from kinesphere.geometry.rotations import rotation_about
-from kinesphere.parameterization.branches import CALM, branches_of_movement
-from kinesphere.parameterization.kernels import smoothest_branches, two_axis_solutions
+from kinesphere.parameterization.branches import (
+    CALM,
+    branches_of_movement,
+    branches_of_small_twist,
+)
+from kinesphere.parameterization.kernels import two_axis_solutions
 from kinesphere.parameterization.samples import smooth_rotations
 from kinesphere.parameterization.settings import AngleSettings, TwistSettings
 from kinesphere.parameterization.twist import closed_twist, sampled_twist
-
-PATIENCE = 1.0  # rad per frame for a second, about what twists in the wrong half turn cost: a limb
-# spun about itself for less keeps its branch, one mistaken for longer finds back
-USUAL = 50.0  # Hz, where nobody says
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,11 +121,10 @@ def two_axis_angles(
     solutions, sines, excess = two_axis_solutions(np.ascontiguousarray(rotations), *given)
     if settings.branch == "viterbi" and deliberate:
         calm = np.ascontiguousarray(smooth_rotations(rotations, rate, CALM))
-        branch = branches_of_movement(solutions, two_axis_solutions(calm, *given)[0], twist_known)
+        calm = two_axis_solutions(calm, *given)[0]
+        branch = branches_of_movement(solutions, calm, twist_known, rate)
     elif settings.branch == "viterbi":
-        branch = smoothest_branches(
-            solutions, twist_known, settings.twist_cost, PATIENCE * (rate or USUAL)
-        )
+        branch = branches_of_small_twist(solutions, twist_known, settings.twist_cost, rate)
     elif settings.branch == "smallest-twist":
         smaller = np.abs(solutions[:, 1, 2]) < np.abs(solutions[:, 0, 2])
         branch = (smaller & twist_known).astype(np.int8)

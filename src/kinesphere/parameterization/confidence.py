@@ -31,7 +31,8 @@ class AxesQuality:
     ranges: Array
     """(n_axes,) rad, arc that the limb's direction covers about each axis in its phases."""
     conditioning: Array
-    """(n_axes,) ratio of the two largest eigenvalues of the pooled rotation scatter."""
+    """(n_axes,) how many times larger the rotation about an axis was than about any other, rms: the
+    root of the ratio of the two largest eigenvalues of the pooled rotation scatter."""
     explained: float
     """Share of the limb's movement that is rotation about the phase's own axis."""
     halves: Array
@@ -84,7 +85,7 @@ def assess_axes(
     return AxesQuality(
         labels=labels,
         ranges=ranges,
-        conditioning=values[:, 2] / np.maximum(values[:, 1], 1e-12),
+        conditioning=np.sqrt(values[:, 2] / np.maximum(values[:, 1], 1e-12)),
         explained=explained / max(total, 1e-300),
         halves=halves_disagreement(samples, axes, labels, find, enough),
         heights=heights,

@@ -168,21 +168,25 @@ def twist_between(model: Array, actual: Array, long_axis: Array) -> float:
 
 @kernel
 def smoothest_branches(
-    solutions: Array, twist_known: Mask, twist_cost: float, leap: float
+    solutions: Array, twist_known: Mask, own: Array, leap: float, nearby: int
 ) -> Branches:
     """Return the branch of every frame on the cheapest path (Viterbi, two states).
 
     A step costs the sum of the wrapped changes of θ1, θ2 and twist, at most 3 rad. Where keeping
     to the branches and changing them are 4 rad apart on the mean, the limb is not at a
     singularity, and the worse of the two costs ``leap`` more: noise while standing must not buy
-    it. A frame costs its squared twist times ``twist_cost``, or where no twist is known a little
-    for not lying on the rest position's side. Frames of NaN are stepped over.
+    it. Frames of NaN are stepped over; past more than ``nearby`` frames the limb may have passed
+    a singularity unseen, and no leap is told.
 
     Parameters
     ----------
     solutions : (n, 2, 3) rad
     twist_known : (n,) bool
-    twist_cost, leap
+    own : (n, 2)
+        What each branch costs in each frame by itself, rad.
+    leap : rad
+    nearby
+        Steps.
 
     Returns
     -------
@@ -210,14 +214,15 @@ def smoothest_branches(
                         d = abs(solutions[f, b, i] - solutions[last, a, i])
                         change[a, b] += min(d, 2.0 * np.pi - d)
             keeping_less = change[0, 1] + change[1, 0] - change[0, 0] - change[1, 1]
-            if keeping_less > 2.0 * APART * parts / 3.0:
+            if f - last > nearby:
+                leap_to_same = leap_to_other = 0.0
+            elif keeping_less > 2.0 * APART * parts / 3.0:
                 leap_to_other = leap
             elif -keeping_less > 2.0 * APART * parts / 3.0:
                 leap_to_same = leap
         for b in range(2):
-            own = twist_cost * solutions[f, b, 2] ** 2 if twist_known[f] else 1e-3 * b
             if last < 0:
-                new[b] = own
+                new[b] = own[f, b]
                 continue
             cheapest = np.inf
             for a in range(2):
@@ -226,7 +231,7 @@ def smoothest_branches(
                 if total < cheapest:
                     cheapest = total
                     origin[f, b] = a
-            new[b] = cheapest + own
+            new[b] = cheapest + own[f, b]
         cost[0], cost[1] = new[0], new[1]
         previous[f] = last
         last = f

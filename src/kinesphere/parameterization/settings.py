@@ -123,7 +123,9 @@ class AxesSettings:
     )
     largest_uncertainty: float = setting(
         10.0,
-        "standard deviation of an axis, half of that angle, from which on the body's axis serves",
+        "standard deviation of an axis, half of that angle, from which on the body's axis serves; "
+        "of a hinge in free motion, elbow or knee, three times that, where its axis foretells the "
+        "movement clearly better than the body's",
         unit="deg",
         low=0.0,
         high=45.0,
@@ -233,7 +235,9 @@ class AngleSettings:
     unwrap: bool = setting(
         False,
         "deliver angles and twists that run on beyond a half turn, for limbs that turn on and on, "
-        "instead of jumping from 180 to -180 deg; poses are the same",
+        "instead of jumping from 180 to -180 deg; poses are the same, but the size of a twist no "
+        "longer tells the branches apart: under soft tissue in swings of 140 deg a quarter of the "
+        "frames of a joint can be half a turn off",
     )
 
     def __post_init__(self) -> None:

@@ -9,7 +9,7 @@ def axes_in_detail(name: str, history: Iterable[Step]) -> str:
     """Return a line for each axis that a joint's movement told; empty for those of the body.
 
     Its standard deviation in any direction, the arc that the limb went about it, and its
-    conditioning: how many times larger the rotation about it is than about any other.
+    conditioning: how many times larger the rotation about it was than about any other, rms.
     """
     told = _told(name, history)
     lines = []
@@ -21,7 +21,7 @@ def axes_in_detail(name: str, history: Iterable[Step]) -> str:
         if k < len(arcs) and isinstance(arcs[k], float):
             figures.append(f"over {arcs[k]:.0f}°")
         if k < len(ratios) and isinstance(ratios[k], float):
-            figures.append(f"conditioning {ratios[k]:.3g}")
+            figures.append(f"rotation {ratios[k]:.3g} times larger than about others")
         if isinstance(deviation, float):
             lines.append(f"axis {k + 1} {', '.join(figures)}")
     return "; ".join(lines)

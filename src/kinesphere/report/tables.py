@@ -11,6 +11,9 @@ from kinesphere.report.axes_words import axes_in_detail
 from kinesphere.report.notices import Notice, names_of, notices
 from kinesphere.report.wording import counted, finding_in_words, number_in_words
 
+UNSURE = 10.0  # deg, standard deviation of an axis from which on the body's is no worse
+OUT_OF_REACH = 0.05  # of the frames; about axes a person has, the limb goes wherever it goes
+
 
 @dataclass(frozen=True)
 class Tile:
@@ -257,17 +260,19 @@ def _joint_row(solution: Solution, j: int, joint: Joint) -> JointRow:
         flagged=", ".join(
             f"{in_words(str(flag.name).lower())} {share:.1%}" for flag, share in known.items()
         ),
-        trust=_trust(joint),
+        trust=_trust(joint, known.get(JointFlag.UNREACHABLE, 0.0)),
     )
 
 
-def _trust(joint: Joint) -> str:
-    """Judge a joint by what its centre rests on; 15 mm is half a knee's width of soft tissue."""
+def _trust(joint: Joint, unreachable: float) -> str:
+    """Judge a joint by what its centre and axes rest on; 15 mm is half a knee's width of skin."""
     if joint.observability in ("undetermined",) or joint.residual > 0.030:
         return "poor"
     if joint.observability == "hinge" or joint.residual > 0.015 or joint.axes_source == "body":
         return "fair"
-    return "good"
+    known = np.asarray(() if joint.axes_uncertainty is None else joint.axes_uncertainty)
+    loose = bool((known > np.deg2rad(UNSURE)).any())  # NaN, nothing told, is not
+    return "fair" if loose or unreachable > OUT_OF_REACH else "good"
 
 
 def degrees_span(degrees: Array) -> str:

@@ -36,7 +36,8 @@ class TwistAxis:
     range: float
     """rad, 5 to 95 % of the angle."""
     conditioning: float
-    """Ratio of the two largest eigenvalues of the rotation scatter."""
+    """How many times larger the rotation about it was than about any other, rms: the root of the
+    ratio of the two largest eigenvalues of the rotation scatter."""
     halves: float
     """rad, largest disagreement of axes from two halves; NaN where untested."""
 
@@ -91,7 +92,7 @@ def find_twist_axis(
         axis,
         phases,
         float(high - low),
-        float(values[2] / max(values[1], 1e-12)),
+        float(np.sqrt(values[2] / max(values[1], 1e-12))),
         float(halves[0]),
     )
     return told if told.uncertainty <= KNOWN else None  # False where NaN
