@@ -19,6 +19,16 @@ FAKE = SimpleNamespace(
 )
 
 
+def test_markers_are_counted_one_by_one_as_well():
+    there = np.arange(200.0 * 3 * 3).reshape(200, 3, 3)
+    found = there.copy()
+    found[:2, 0] = np.nan  # F1 0.995
+    found[:9, 1] = -1.0  # 0.955
+    recording = SimpleNamespace(markers=found, labels=("a", "b", "c"))
+    counts = broken._counts(recording, there, np.arange(3), ("a", "b", "c"))
+    assert counts == {"samples": 600, "right": 589, "wrong": 9, "low_markers": 1}
+
+
 def person(recording):
     return recording.split("_")[0]
 

@@ -7,9 +7,12 @@ import numba
 import numpy as np
 import pytest
 
+from kinesphere.cli.label import show
 from kinesphere.cli.main import run
+from kinesphere.data import Recording, Step
 from kinesphere.io import read, write, write_model
 from kinesphere.labelling import built_in_model
+from kinesphere.report import labelling_html
 from kinesphere.skeleton.statistics import marker_statistics
 from kinesphere.synthetic import make_performance
 
@@ -92,6 +95,31 @@ def test_machines_get_json(files, capsys):
     summary = json.loads(capsys.readouterr().out)
     assert summary["labels_known"] == len(HEAD)
     assert set(summary["labels"]) == set(HEAD)
+
+
+@pytest.mark.parametrize(("sure", "said"), [(0.6, "sure"), (0.37, "likely"), (0.2, "look")])
+def test_table_and_page_call_a_confidence_the_same(files, capsys, sure, said):
+    model = built_in_model("cmu41")
+    row = {"confidence": sure, "share": 1.0, "pieces": 1}
+    step = Step("label", {"model": "cmu41"}, {"labels": {"C7": row}})
+    found = Recording(
+        np.zeros((2, 1, 3)), ("C7",), 100.0, confidence=np.array([sure]), history=(step,)
+    )
+    show(
+        {
+            "file": "x.c3d",
+            "model": "cmu41",
+            "labels_given": 1,
+            "labels_known": 1,
+            "points_left_unlabelled": 0,
+            "doubtful": [],
+            "warnings": [],
+            "labels": {"C7": row},
+        }
+    )
+    (line,) = (x for x in capsys.readouterr().out.splitlines() if "C7" in x)
+    assert said in line.split()
+    assert f'C7</th><td class="dim">{said}</td>' in labelling_html(found, model)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Points without identity: followed from frame to frame, labelled live and in a file."""
 
+from concurrent.futures import Future
 from dataclasses import replace
 
 import numba
@@ -9,6 +10,7 @@ import pytest
 from kinesphere.errors import BadModel, BadSetting
 from kinesphere.labelling import LiveLabeller, label
 from kinesphere.labelling.crowd import followed, is_crowd, taken
+from kinesphere.labelling.lock_on import SLICE
 
 slow_in_python = pytest.mark.skipif(
     bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes"
@@ -110,6 +112,31 @@ class TestLiveLabeller:
         assert live.note == ""
         assert wrong == 0
         assert right > 0.98 * recording.n_markers * (len(frames) - 401)
+
+    @slow_in_python
+    def test_frames_that_waited_are_made_up_for_in_slices(self, legs, rng):
+        model, recording = legs
+        live = LiveLabeller(model, recording.rate, 8.0)
+        frames, truth = crowds_of(recording.markers[FREE:], rng)
+        coming = zip(frames, truth, strict=True)
+        while live._pending is None:
+            live.label(next(coming)[0])
+        recognised, live._pending = live._pending.result(), Future()
+        waiting = 3 * SLICE
+        for _ in range(waiting):
+            assert (live.label(next(coming)[0]) < 0).all()
+        live._pending.set_result(recognised)
+        calls = 0
+        while not live.locked_on or live._behind:
+            frame, true = next(coming)
+            behind = len(live._behind) if live.locked_on else waiting
+            given = live.label(frame)
+            assert behind + 1 - len(live._behind) <= SLICE
+            assert (given < 0).all() == bool(live._behind)
+            calls += 1
+        live.close()
+        assert calls == 4
+        assert (given == true).mean() > 0.9
 
     @slow_in_python
     def test_a_body_that_left_is_waited_for(self, legs):

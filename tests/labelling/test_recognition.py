@@ -7,9 +7,9 @@ from numpy.testing import assert_array_equal
 
 from kinesphere.labelling.bodies import bodies_of
 from kinesphere.labelling.labelled import Labelled
-from kinesphere.labelling.matching import Match
+from kinesphere.labelling.matching import Match, nothing
 from kinesphere.labelling.pair_statistics import match_pair_statistics
-from kinesphere.labelling.recognition import _agreed, _Seen, windows_of
+from kinesphere.labelling.recognition import _agreed, _Seen, recognised, windows_of
 from kinesphere.labelling.runs import Run
 
 N_LABELS = 6
@@ -31,6 +31,25 @@ def agreed(*windows):
     match, columns = _agreed(list(windows), state, N_LABELS)
     given = zip(columns, match.labels.tolist(), match.confidence.tolist(), strict=True)
     return {k: (label, c) for k, label, c in given if label >= 0}, len(state.windows_s)
+
+
+def test_where_every_window_is_refused_the_reason_is_said(legs):
+    model, recording = legs
+    half = recording.n_frames // 2
+    tracks = [
+        (Run(k, a, b),)
+        for k in range(recording.n_markers)
+        for a, b in ((0, half), (half, recording.n_frames))
+    ]
+    n = len(tracks)
+    state = Labelled(np.full((recording.n_frames, n, 3), np.nan), tracks, [-1] * n, [0.0] * n)
+
+    def refused(points, _):
+        return nothing(points.shape[1], "for a reason")
+
+    match, columns = recognised(recording.markers, recording.rate, state, model, refused, 0.1)
+    assert match.note == "for a reason"
+    assert columns == []
 
 
 class TestAgreement:

@@ -9,10 +9,16 @@ from numpy.testing import assert_array_equal
 from tests.labelling.conftest import actor
 
 from kinesphere.geometry.signature import signature
+from kinesphere.labelling.blocks import twins
 from kinesphere.labelling.held import held_to_distances
 from kinesphere.labelling.pair_statistics import match_pair_statistics
 from kinesphere.labelling.problem import problem_of
-from kinesphere.labelling.same_person import is_the_person, rigid_pairs, template_of_person
+from kinesphere.labelling.same_person import (
+    is_mirrored,
+    is_the_person,
+    rigid_pairs,
+    template_of_person,
+)
 from kinesphere.labelling.seating import places_of
 from kinesphere.labelling.template import of_one_segment, template_of
 from kinesphere.skeleton.statistics import marker_statistics
@@ -62,6 +68,13 @@ class TestStandingTrial:
         assert (given < 0).all()
         assert "standing still" in match.note
 
+    def test_it_refuses_its_person_in_a_mirror(self, legs, static_model, rng):
+        recording = legs[1]
+        mirrored = replace(recording, markers=recording.markers * np.array([1.0, 1.0, -1.0]))
+        given, _, match = labels_of(mirrored, static_model, rng)
+        assert (given < 0).all()
+        assert "left and right are mirrored" in match.note
+
     def test_it_is_labelled_by_a_movement_of_its_person(self, legs, rng):
         model, recording = legs
         learnt = marker_statistics(recording, model.labels, "moving")
@@ -109,6 +122,22 @@ class TestPerson:
         assert not is_the_person(1.08 * found.mean, labels, own, rigid)
         assert not is_the_person(found.mean, np.roll(labels, 1), own, rigid)
         assert not is_the_person(found.mean, np.full(own.n, -1), own, rigid)
+
+    def test_a_mirror_is_told_by_the_sides_that_distances_fit(self, known, static_model):
+        own, rigid, _, found = known
+        twin = twins(static_model, own.labels)
+        labels = np.arange(own.n)
+        assert not is_mirrored(found.mean, labels, twin, own, rigid)
+        assert is_mirrored(found.mean, twin[labels], twin, own, rigid)
+        assert not is_mirrored(found.mean, np.full(own.n, -1), twin, own, rigid)
+
+    def test_of_a_symmetric_body_nothing_is_said(self, known, static_model):
+        own, rigid, _, _ = known
+        twin = twins(static_model, own.labels)
+        mean = own.size * (own.mean + own.mean[np.ix_(twin, twin)]) / 2
+        symmetric = replace(own, mean=mean / own.size)
+        for labels in (np.arange(own.n), twin):
+            assert not is_mirrored(mean, labels, twin, symmetric, rigid)
 
     def test_the_first_place_of_a_segment_is_its_own(self, known):
         own, rigid, segments, found = known

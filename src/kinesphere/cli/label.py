@@ -103,6 +103,7 @@ def describe(recording: "Recording") -> dict[str, Any]:
 def show(summary: dict[str, Any]) -> None:
     """Print what labelling found, for people."""
     from kinesphere.cli.console import print_table, print_title, print_warnings, stdout
+    from kinesphere.labelling.findings import said_of
 
     console = stdout()
     if "labels" not in summary:
@@ -120,7 +121,7 @@ def show(summary: dict[str, Any]) -> None:
         summary["labels"].items(), key=lambda item: (item[1]["confidence"] or 0.0, item[0])
     ):
         sure = row["confidence"]
-        said = "not given" if sure is None else "look" if name in summary["doubtful"] else "sure"
+        said = "not given" if sure is None else said_of(sure)
         rows.append(
             (
                 name,

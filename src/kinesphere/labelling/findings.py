@@ -7,12 +7,21 @@ from kinesphere.labelling.labelled import Labelled, length_of
 from kinesphere.labelling.settings import LabellingSettings
 from kinesphere.labelling.template import template_of
 
+SURE = 0.5
+"""Confidence from which on a label is called sure..."""
 DOUBTFUL = 0.25
-"""Confidence below which a person should look."""
+"""...and below which a person should look; in between it is likely."""
 LASTING = 0.5
 """Share of the recording that a point without label must last..."""
 OTHERS = 0.1
 """...and share of the labels that such points are, from which on the layout may be another one."""
+
+
+def said_of(confidence: float) -> str:
+    """Return the word for a confidence that every page and table uses."""
+    if confidence >= SURE:
+        return "sure"
+    return "likely" if confidence >= DOUBTFUL else "look"
 
 
 def mean_confidences(state: Labelled, n_labels: int) -> Array:
@@ -67,9 +76,9 @@ def step_of(
         )
     if lasting > OTHERS * len(known) and given:
         warnings.append(
-            f"{lasting} points are there most of the time and bear no label: if they sit on the "
-            f"body, it wears another layout than {model.name}, and labels beside them may be "
-            "those of neighbours"
+            f"{lasting} points are there most of the time and bear no label: they are props or "
+            f"another body's, or, if they sit on this one, it wears another layout than "
+            f"{model.name}, and labels beside them may be those of neighbours"
         )
     if doubtful:
         warnings.append(

@@ -1,7 +1,8 @@
 """Labels live from the first frame on: wait for some motion, recognise the body, follow it.
 
-Recognition takes a second or so of another thread, while frames come in; those that came meanwhile
-are made up for within milliseconds.
+Recognition takes some seconds of another thread, 6 to 46 on a machine with other work, while frames
+come in and get no labels. Those that came meanwhile are made up for in slices: each frame that
+comes takes some of them along.
 """
 
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -27,6 +28,8 @@ HELD = 0.5
 """Share of the labels that were found, below which a body is lost..."""
 LOST_S = 2.0
 """s, ...when it lasts so long: it has left, and is recognised anew when it is back."""
+SLICE = 16
+"""Frames followed in one call while those that came during recognition are made up for: 5 ms."""
 
 
 class LiveLabeller:
@@ -77,6 +80,7 @@ class LiveLabeller:
         self._pending: Future[LiveLabels | str] | None = None
         self._live: LiveLabels | None = None
         self._frames: list[Array] = []
+        self._behind: list[Array] = []
         self._next = self._wanted
         self._found = 0
         self._poor = 0
@@ -95,6 +99,9 @@ class LiveLabeller:
             Of one frame, in any order, as many as there are; NaN is no point.
         """
         points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+        if self._live is not None and self._behind:
+            self._behind.append(points)
+            return self._catch_up(self._live)
         if self._live is not None:
             return self._follow(self._live, points)
         self._frames.append(points)
@@ -142,7 +149,7 @@ class LiveLabeller:
         return LiveLabels(state.points, self.labels, self._rate)
 
     def _end(self, result: LiveLabels | str) -> NDArray[np.int64]:
-        """Take over what was recognised, and make up for the frames since."""
+        """Take over what was recognised, and begin to make up for the frames since."""
         self._pending = None
         if isinstance(result, str):
             self.note = result
@@ -151,10 +158,20 @@ class LiveLabeller:
         last, since = self._frames[self._next - 1], self._frames[self._next :]
         self._live, self.note, self._frames = result, "", []
         self._found = self._poor = 0
-        given = result.placed(last)
-        for points in since:
-            given = self._follow(result, points)
-        return given
+        if not since:
+            return result.placed(last)
+        self._behind = since
+        return self._catch_up(result)
+
+    def _catch_up(self, live: LiveLabels) -> NDArray[np.int64]:
+        """Follow some of the frames that came meanwhile; return labels of the newest one."""
+        newest = self._behind[-1]
+        some, self._behind = self._behind[:SLICE], self._behind[SLICE:]
+        for points in some:
+            given = self._follow(live, points)
+            if self._live is None:
+                self._behind = []
+        return np.full(len(newest), -1, dtype=np.int64) if self._behind else given
 
     def _follow(self, live: LiveLabels, points: Array) -> NDArray[np.int64]:
         given = live.label(points)

@@ -23,7 +23,9 @@ from kinesphere.labelling.matching import Match, nothing
 from kinesphere.labelling.plausible import is_still, learnt_standing, plausible
 from kinesphere.labelling.problem import Labels, Problem, problem_of
 from kinesphere.labelling.same_person import (
+    MIRROR_IMAGE,
     SKIN,
+    is_mirrored,
     is_the_person,
     rigid_pairs,
     template_of_person,
@@ -75,6 +77,8 @@ def match_pair_statistics(
         )
     found = signature(points[:, kept])
     again = _of_person(found, layout, model)
+    if isinstance(again, str):
+        return nothing(n_points, again)
     if again is not None:
         return verdict(again, layout, kept, n_points, model.name)
     if learnt_standing(model):
@@ -122,8 +126,8 @@ def _solve(found: Signature, layout: Layout) -> Solved:
     return _finished(found, scale, layout, problem, labels, energy, rivals)
 
 
-def _of_person(found: Signature, layout: Layout, model: TopologicalModel) -> Solved | None:
-    """Label points as those of the one person the model was learnt from, if they prove to be."""
+def _of_person(found: Signature, layout: Layout, model: TopologicalModel) -> Solved | str | None:
+    """Label points as the one person's the model was learnt from, or say that they are mirrored."""
     names = layout.template.labels
     rigid = rigid_pairs(model, names, model.statistics)
     if not rigid.any():
@@ -135,6 +139,10 @@ def _of_person(found: Signature, layout: Layout, model: TopologicalModel) -> Sol
     segments = [[at[x] for x in (*s.markers, *s.shared) if x in at] for s in model.segments]
     labels = seated(problem, found.mean, size * own.template.mean, rigid, SKIN, segments)
     labels, energy = _refined(problem, labels, own)
+    # true labels of a mirrored body disagree with its handedness, those found agree with it
+    turned = problem.agreement(np.where(labels >= 0, layout.twin[labels], -1)) < 0
+    if turned and is_mirrored(found.mean, labels, layout.twin, own.template, rigid):
+        return MIRROR_IMAGE.format(model.name)
     if not is_the_person(found.mean, labels, own.template, rigid):
         return None
     solved = _finished(found, size, own, problem, labels, energy, [])

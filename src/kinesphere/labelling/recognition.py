@@ -51,6 +51,7 @@ def recognised(
     if whole:
         stretches.append((0, n_frames, list(range(len(state.tracks)))))
     found: list[_Seen] = []
+    refusal = ""
     for start, end, columns in stretches:
         points = points_of(markers, [state.tracks[k] for k in columns])[start:end]
         match = labeller(points, model)
@@ -58,8 +59,10 @@ def recognised(
         worth = float(sure.sum()) * (match.fit if np.isfinite(match.fit) else 1.0)
         if len(stretches) == 1 or not match.note:
             found.append(_Seen(worth, match, columns, (start / rate, end / rate)))
+        else:
+            refusal = refusal or match.note
     if not found:
-        return nothing(0, "at no time can enough of the body be seen at once"), []
+        return nothing(0, refusal or "at no time can enough of the body be seen at once"), []
     return _agreed(found, state, n_labels)
 
 

@@ -15,7 +15,8 @@ WORST_FIT = 0.8
 """Nats a pair by which labels must fit better than nothing; right labels of other people have 1.3
 and more, points that move at random reach 0.5."""
 LEAST_AGREEMENT = 0.3
-"""Handedness that must agree: right labels have 0.6 and more, those of a mirrored body −0.6."""
+"""Handedness that must agree: right labels have 0.6 and more. It does not tell mirrored points: a
+body is nearly its own mirror image, so labels with left and right exchanged agree as well."""
 
 
 def verdict(

@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import minimum_spanning_tree
 import kinesphere
 from kinesphere.data import Array, Recording, TopologicalModel
 from kinesphere.errors import KinesphereError
+from kinesphere.labelling.findings import said_of
 from kinesphere.quality import orient
 from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.moments import runs
@@ -21,7 +22,7 @@ STILLS = 3
 """Instants drawn, spread over the recording."""
 COLUMNS = 240
 """Cells of the time line."""
-_SURE, _FAIR = 0.5, 0.25
+_TRUST = {"sure": "good", "likely": "fair", "look": "poor"}
 _WIDTH, _HEIGHT = 300, 380
 
 
@@ -112,8 +113,8 @@ def _rows(recording: Recording, model: TopologicalModel) -> list[LabelRow]:
         sure = np.nan if recording.confidence is None else float(recording.confidence[column])
         seen = recording.seen[:, column]
         kept = np.isnan(sure)
-        trust = "good" if kept or sure >= _SURE else "fair" if sure >= _FAIR else "poor"
-        said = "kept" if kept else {"good": "sure", "fair": "likely", "poor": "look"}[trust]
+        said = "kept" if kept else said_of(sure)
+        trust = _TRUST.get(said, "good")
         holes = runs(~seen)
         longest = max((b - a for a, b in holes), default=0) / recording.rate
         rows.append(
@@ -192,7 +193,7 @@ def _drawing(
         if not known[i]:
             continue
         c = np.nan if sure is None else sure[columns[i]]
-        trust = "good" if np.isnan(c) or c >= _SURE else "fair" if c >= _FAIR else "poor"
+        trust = "good" if np.isnan(c) else _TRUST[said_of(c)]
         left = px[i] < _WIDTH / 2
         parts.append(
             f'<circle class="{trust}" cx="{px[i]:.1f}" cy="{py[i]:.1f}" r="3.2"/>'
