@@ -167,7 +167,7 @@ def test_limbs_that_are_not_there(actor, plain, limbs, absent):
 def test_a_layout_without_a_leg_is_better_named(actor):
     solution = solve(without(actor, SHANK, absent=True))
     assert solution.model_name == "motion alone"
-    assert warning(solution, "cmu41 88%", "without some limbs, name it with --model")
+    assert warning(solution, "cmu41 88%", "without some limbs", "name it with --model")
 
 
 def test_a_mirrored_person(actor, plain):

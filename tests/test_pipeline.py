@@ -189,7 +189,7 @@ def test_what_has_no_front_faces_an_axis_of_the_world_and_says_so():
     step = next(step for step in solution.history if step.name == "normalization")
     assert step.findings["facing"]["decided_by"].startswith("assumed (")  # not by any user
     with pytest.raises(AmbiguousFacing):
-        solve(performance.recording, "none", facing="feet")
+        solve(performance.recording, "none", facing="walking")
 
 
 def test_hidden_markers_are_filled_where_that_is_asked_for(person):

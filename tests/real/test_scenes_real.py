@@ -77,4 +77,6 @@ def test_parsec_opens_and_its_foreground_maps_fit_its_calibration(tmp_path, reco
     assert all((image[..., 0] == image[..., 2]).all() for image in frame.images)  # grey
     step = check_scene(scene)
     assert step.findings["disagreement_px"] < 0.008 * np.hypot(640, 480)
-    assert step.warnings == ()
+    # the cameras were moved by some pixels since: the hull fills more of the maps with them mended
+    assert step.warnings
+    assert all("seems to have been moved" in warning for warning in step.warnings)
