@@ -10,6 +10,8 @@ from kinesphere.skeleton.chain import MeasuredJoint
 from kinesphere.skeleton.poses import Poses
 from kinesphere.skeleton.settings import SkeletonSettings
 
+ROUNDING = 1e-13
+"""Share of the largest variance below which one is nothing but rounding."""
 VERDICT_NOISE = 5e-4
 """m, least noise the verdict on a centre reckons with: no recording is better than that."""
 
@@ -58,7 +60,9 @@ def verdict_on(
     """
     fit = measured.fit
     inflate = max(1.0, (VERDICT_NOISE / max(fit.noise, 1e-9)) ** 2)
-    deviations = np.sqrt(np.maximum(np.linalg.eigvalsh(fit.data_covariance * inflate), 0.0))
+    variances = np.linalg.eigvalsh(fit.data_covariance)
+    known = variances < ROUNDING * variances[-1]  # beside what is open, nothing but rounding
+    deviations = np.sqrt(inflate * np.where(known, 0.0, variances))
     # open: worse known than is useful, or known better from the expectation than from the motion
     told = np.linalg.eigvals(fit.data_covariance @ fit.prior).real
     weak = max(int((deviations > settings.undetermined_mm * 1e-3).sum()), int((told > 1).sum()))
