@@ -6,11 +6,8 @@ from numpy.testing import assert_allclose
 
 from kinesphere.parameterization.axes import find_axes
 from kinesphere.parameterization.axes.fit import phase_swing
-from kinesphere.parameterization.confidence import (
-    assess_axes,
-    contradiction,
-    early_share,
-)
+from kinesphere.parameterization.confidence import assess_axes
+from kinesphere.parameterization.halves import contradiction, early_share
 from kinesphere.parameterization.settings import AxesSettings
 
 

@@ -7,7 +7,10 @@ import pytest
 
 from kinesphere.data import JointFlag, PoseFlag, Step
 from kinesphere.report.axes_words import axes_in_detail
-from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
+from kinesphere.report.joint_table import chart_order, joint_rows
+from kinesphere.report.limb_table import limb_rows
+from kinesphere.report.step_cards import step_cards
+from kinesphere.report.tiles import tiles
 
 
 def with_joint(solution, index, **changes):

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.hinge import hinge_axis
-from kinesphere.parameterization.confidence import PERCENTILES
 from kinesphere.parameterization.samples import JointSamples, Phase
 
 FOLDS = 4  # parts of the movement, each left out once

@@ -7,22 +7,20 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.parameterization.anatomy import nominal_axes
 from kinesphere.parameterization.angles import two_axis_angles
+from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes import find_axes
 from kinesphere.parameterization.axes.fit import phase_labels
 from kinesphere.parameterization.axes.universal_joint import reference_rotation
-from kinesphere.parameterization.confidence import (
+from kinesphere.parameterization.confidence import AxesQuality, assess_axes
+from kinesphere.parameterization.doubts import apart, reasons_to_doubt
+from kinesphere.parameterization.free_hinge import worse_than_body
+from kinesphere.parameterization.halves import (
     LEAST_SHARE,
-    PERCENTILES,
-    AxesQuality,
     Finder,
     Searcher,
-    apart,
-    assess_axes,
     contradiction,
     early_share,
-    reasons_to_doubt,
 )
-from kinesphere.parameterization.free_hinge import worse_than_body
 from kinesphere.parameterization.main_movements import long_phases, main_movements
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import (

@@ -6,7 +6,7 @@ from markupsafe import Markup
 from kinesphere.data import Solution
 from kinesphere.data.isb import GIMBAL_MARGIN_DEG, IsbAngles, isb_angles
 from kinesphere.report.assets_of import asset, environment
-from kinesphere.report.tables import degrees_span, in_words
+from kinesphere.report.wording import degrees_span, in_words
 
 _OFTEN = 0.01  # share of frames from which a warning catches the eye
 

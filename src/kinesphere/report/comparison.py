@@ -12,8 +12,8 @@ from kinesphere.comparison import Comparison, ParameterComparison
 from kinesphere.data.sticks import side_of
 from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.plots import Curve, curves, dots
-from kinesphere.report.tables import Tile, in_words
-from kinesphere.report.wording import counted, number_in_words
+from kinesphere.report.tiles import Tile
+from kinesphere.report.wording import counted, in_words, number_in_words
 
 KINDS = {
     "bend": "bend: the angle between two limbs",

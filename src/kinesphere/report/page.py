@@ -12,10 +12,13 @@ from kinesphere.data import Solution
 from kinesphere.report.assets_of import asset, environment
 from kinesphere.report.bodies import find_bodies
 from kinesphere.report.clinical import clinical_section
+from kinesphere.report.joint_table import chart_order, joint_rows
+from kinesphere.report.limb_table import limb_rows
 from kinesphere.report.moments import moment_rows
 from kinesphere.report.notices import names_of, notices
 from kinesphere.report.scene import scene_from_solution
-from kinesphere.report.tables import chart_order, joint_rows, limb_rows, step_cards, tiles
+from kinesphere.report.step_cards import step_cards
+from kinesphere.report.tiles import tiles
 
 SCRIPTS = (
     "unpack.js",

@@ -3,7 +3,9 @@
 import math
 from collections.abc import Sequence
 
-from kinesphere.data import Json
+import numpy as np
+
+from kinesphere.data import Array, Json
 
 _UNITS = {
     "mm": "mm",
@@ -60,6 +62,25 @@ def number_in_words(value: float | None, unit: str = "", digits: int = 3) -> str
             text = text.rstrip("0").rstrip(".")
     gap = "" if unit in ("°", "%", "") else " "
     return f"{text}{gap}{unit}"
+
+
+def in_words(name: str) -> str:
+    """Return a name as a person writes it: ``left_upper_arm`` → ``left upper arm``."""
+    return name.replace("_", " ")
+
+
+def millimetres(metres: float) -> str:
+    """Return a length in metres as millimetres, with their unit."""
+    return number_in_words(metres * 1e3, "mm")
+
+
+def degrees_span(degrees: Array) -> str:
+    """Return 5 % … 95 % of what is no NaN, (n_frames,) in degrees."""
+    known = degrees[np.isfinite(degrees)]
+    if not len(known):
+        return "–"
+    low, high = (float(v) for v in np.percentile(known, [5, 95]))
+    return f"{round(low)}° … {round(high)}°"  # round() knows no -0
 
 
 def unique(sentences: Sequence[str]) -> list[str]:

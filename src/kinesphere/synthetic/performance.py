@@ -18,18 +18,15 @@ from kinesphere.data import (
     motion_from_parameters,
 )
 from kinesphere.errors import BadSetting
-from kinesphere.geometry.rotations import rotation_about, rotation_angle
+from kinesphere.geometry.rotations import rotation_angle
 from kinesphere.synthetic.actor import Actor, make_actor
 from kinesphere.synthetic.axes import Range
 from kinesphere.synthetic.bodies import HUMAN
 from kinesphere.synthetic.layout import Layout, place_markers
-from kinesphere.synthetic.movement import Course, angle_courses, smooth_noise
+from kinesphere.synthetic.movement import Course, angle_courses
 from kinesphere.synthetic.plan import BodyPlan
+from kinesphere.synthetic.root import root_positions, root_rotations, way_over_floor
 
-_PACE = 0.8  # m/s, of walking
-_ROAM_M = 1.5  # radius of the way walked in free motion
-_SWAY_M = 0.004  # standard deviation of the root's sway while calibrating
-_FLOOR_M = 0.01  # over this height the support passes smoothly from one foot to the other
 _N_COMPARED = 80  # frames among which the range of motion is looked for
 
 
@@ -203,11 +200,11 @@ def _on_the_floor(
 ) -> tuple[Parameters, Motion]:
     """Put the angles on the skeleton and the skeleton on the floor."""
     n_frames, n_joints = len(times), len(skeleton.joints)
-    heading, way = _way(rng, course, times)
+    heading, way = way_over_floor(rng, course, times)
     parameters = Parameters(
         skeleton=skeleton,
         root_positions=np.zeros((n_frames, 3)),
-        root_rotations=_root_rotations(rng, heading, course, times),
+        root_rotations=root_rotations(rng, heading, course, times),
         angles=course.angles[..., :3],
         twists=course.angles[..., 3],
         residuals=np.zeros((n_frames, n_joints)),
@@ -224,74 +221,14 @@ def _on_the_floor(
         for j, joint in enumerate(skeleton.joints)
     )
     skeleton = replace(skeleton, joints=joints)
-    root_positions = _root_positions(rng, way, actor, hovering, course, times)
+    positions = root_positions(rng, way, actor, hovering, course, times)
     motion = replace(
         hovering,
         skeleton=skeleton,
-        origins=hovering.origins + root_positions[:, None],
+        origins=hovering.origins + positions[:, None],
         residuals=np.zeros_like(hovering.residuals),
     )
-    return replace(parameters, skeleton=skeleton, root_positions=root_positions), motion
-
-
-def _way(rng: np.random.Generator, course: Course, times: Array) -> tuple[Array, Array]:
-    """Draw where the actor looks and its way over the floor.
-
-    It walks the way it looks, along a bent loop that leads back to its start, so that it stays in
-    the room however long it walks.
-
-    Returns
-    -------
-    heading : (n_frames,) rad about y
-    way : (n_frames, 2) m along x and z, from where it stood
-    """
-    steps = np.diff(times, prepend=times[0]) * _PACE * course.walking
-    u = np.cumsum(steps) / _ROAM_M
-    side, start, bend, phase = rng.uniform([-1, -np.pi, 0.2, -np.pi], [1, np.pi, 0.6, np.pi])
-    # a full turn and two waves: the integral of the direction over 2π is zero
-    heading = start + np.sign(side) * (u + bend * np.sin(2 * u + phase))
-    way = np.cumsum(steps[:, None] * np.stack([np.cos(heading), -np.sin(heading)], 1), axis=0)
-    return np.asarray(heading), np.asarray(way)
-
-
-def _root_rotations(
-    rng: np.random.Generator, heading: Array, course: Course, times: Array
-) -> Array:
-    """Draw a tilt to the heading that is sway while calibrating and play in free motion."""
-    tilt = np.deg2rad(0.2 + 5 * course.free)[:, None] * smooth_noise(rng, times, (2,), 0.1, 0.4)
-    x, y, z = np.eye(3)
-    return np.asarray(
-        rotation_about(y, heading) @ rotation_about(x, tilt[:, 0]) @ rotation_about(z, tilt[:, 1])
-    )
-
-
-def _root_positions(
-    rng: np.random.Generator,
-    way: Array,
-    actor: Actor,
-    hovering: Motion,
-    course: Course,
-    times: Array,
-) -> Array:
-    """Let the root follow its way, at the height that keeps the lowest foot on the floor."""
-    positions = np.empty((len(times), 3))
-    sway = _SWAY_M * smooth_noise(rng, times, (2,), 0.1, 0.5)
-    positions[:, [0, 2]] = rng.uniform(-1, 1, 2) + way + sway
-    feet = [hovering.skeleton.limb_names.index(name) for name in actor.plan.stands_on]
-    if not feet:
-        positions[:, 1] = 1.0 + 0.2 * course.free * smooth_noise(rng, times, (), 0.05, 0.2)
-        return positions
-    ends = np.array(
-        [limb.length / 2 * limb.long_axis for limb in (hovering.skeleton.limbs[i] for i in feet)]
-    )
-    heights = (
-        hovering.origins[:, feet, 1] + ((hovering.rotations[:, feet] @ ends[..., None])[..., 1, 0])
-    )
-    deep = heights.min(axis=1)
-    softly = np.exp(-(heights - deep[:, None]) / _FLOOR_M).sum(axis=1)
-    lowest = deep - _FLOOR_M * np.log(softly / len(feet))
-    positions[:, 1] = actor.plan.sole * actor.size - lowest
-    return positions
+    return replace(parameters, skeleton=skeleton, root_positions=positions), motion
 
 
 def _range_of_motion(relative: Array) -> float:

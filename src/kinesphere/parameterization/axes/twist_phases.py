@@ -7,9 +7,11 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.geometry.rotations import mean_rotation, rotation_log
+from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.fit import thinned
 from kinesphere.parameterization.axes.kernels import turned_between
-from kinesphere.parameterization.confidence import PERCENTILES, TISSUE, halves_disagreement
+from kinesphere.parameterization.confidence import TISSUE
+from kinesphere.parameterization.halves import halves_disagreement
 from kinesphere.parameterization.movement_filter import (
     moving_frames,
     persistence_threshold,

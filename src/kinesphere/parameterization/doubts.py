@@ -1,0 +1,60 @@
+"""Why axes may not be those of main movements."""
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.parameterization.confidence import AxesQuality
+from kinesphere.parameterization.settings import AxesSettings
+
+
+def reasons_to_doubt(
+    quality: AxesQuality, axes: Array, nominal: Array | None, positions: Array, s: AxesSettings
+) -> list[str]:
+    """Return why these are not the axes of main movements, each a clause; or nothing.
+
+    Parameters
+    ----------
+    quality
+        Of ``axes``.
+    axes : (n_axes, 3)
+    nominal : (n_axes, 3), optional
+        Where anatomy has the axes, in the same order.
+    positions : (n, 3)
+        All of the calibration, at rest and moving.
+    s
+        The limits.
+    """
+    doubts: list[str] = []
+    if (small := np.rad2deg(quality.ranges.min())) < s.smallest_range:
+        doubts.append(
+            f"the range of motion about an axis is {small:.0f}°, {s.smallest_range:.0f}° are needed"
+        )
+    if not np.isfinite(quality.halves).all():
+        doubts.append("there is too little movement to compare two halves of it")
+    elif np.rad2deg(quality.halves.max()) > 2 * s.largest_uncertainty:
+        doubts.append(apart(quality.halves))
+    if len(axes) > 1 and quality.explained < s.smallest_explained:
+        doubts.append(
+            f"rotation about one axis at a time explains only {quality.explained:.0%} "
+            "of the movement"
+        )
+    if len(axes) == 1:
+        heights = np.arccos(np.clip(positions @ axes[0], -1, 1))
+        spread = float(np.rad2deg(np.sqrt(((heights - np.median(heights)) ** 2).mean())))
+        if spread > s.largest_spread:
+            doubts.append(f"the limb leaves the cone about its only axis by {spread:.0f}° rms")
+    if nominal is not None:
+        off = np.arccos(np.clip(np.abs((axes * nominal).sum(axis=1)), 0, 1))
+        if (farthest := np.rad2deg(off.max())) > s.farthest:
+            doubts.append(f"an axis is {farthest:.0f}° from where this joint can have one")
+    for i in range(1, len(axes)):
+        for j in range(i):
+            angle = np.rad2deg(np.arccos(min(1.0, abs(float(axes[i] @ axes[j])))))
+            if angle < s.smallest_angle:
+                doubts.append(f"two axes are {angle:.0f}° apart, too close to be two")
+    return doubts
+
+
+def apart(halves: Array) -> str:
+    """Return how far axes from two halves differ, (n_axes,) rad, as a clause."""
+    return f"axes from two halves of the data differ by {np.rad2deg(halves.max()):.0f}°"
