@@ -108,9 +108,10 @@ without the first bend and its return, in which the person lifts the thigh into 
 | knee | bends and returns | scatter, ° | expected, ° | halves, ° | hysteresis, ° | without the first: scatter, ° | expected, ° | halves, ° |
 |---|---:|---:|---:|---:|---:|---:|---:|---:|"""  # noqa: E501
 _AFTER = """
-Bends are not told from returns. An axis that is the same in every bend would still be told from two
-halves of this scatter with the expected difference: 1.5° is at that floor, so one knee below and
-one above it is what chance gives, and no estimator mends it; more bends do.
+Bends are not told from returns, so there is no hysteresis to reckon with. Of an axis that is the
+same in every bend two halves of this scatter would still differ by the expected angle: 1.5° is what
+chance leaves of ten looks. An estimator can weigh them, more of them it cannot make. What the right
+knee has above that is its first bend: without it the means of both knees are below 1.5° apart.
 """
 
 

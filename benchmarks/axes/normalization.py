@@ -248,8 +248,9 @@ the same rule. Six stances scatter so much that nobody gets below its row from t
 default has above it is the stances that it leaves out as less good. Letting those in
 (`normalization.posture_margin=1` or 2), or averaging each limb wherever it hangs as in the default
 position, brings *poses of all kinds* to the oracle's row and below (1.7° pairwise), and the trials
-of the real person below apart (legs 4.9, 5.4 and 5.3° instead of 4.9°): legs that bend or lift also
-turn, which scatter that is independent at every joint leaves out. So neither is the default.
+of the real person below apart (4.9, 5.4 and 5.3° instead of 4.9°: legs and feet, all nine trials):
+legs that bend or lift also turn, which scatter that is independent at every joint leaves out. So
+neither is the default.
 
 The actor's trunk is one rigid limb that carries shoulders and hips, so with exact joint centres the
 default's body frame cannot deviate at all: the rows with joint errors are the ones to believe.
