@@ -21,7 +21,7 @@ ALIGNED = 0.8
 """Least cosine between the axis of a hinge and the direction its motion knows least."""
 TURNED = 0.5
 """Least cosine between the axis of a hinge and the one axis its limb turned about, which the motion
-tells better than the model does: of a knee that hardly bends it knows the body's right alone."""
+tells better than the model does: knees are up to 43° from the line across their thigh's markers."""
 FIRM = 16.0
 """Information from the motion, in the expectation's units, above which a hinge is left to it."""
 FAR = 10.0
