@@ -5,12 +5,14 @@ from typing import Any
 
 from benchmarks.axes import (
     angles,
+    bends,
     estimators,
     filters,
     free_motion,
     normalization,
     papers_metrics,
     repeatability,
+    same_person,
     segments,
     third_axis,
     times,
@@ -61,8 +63,10 @@ def page(found: dict[str, Any]) -> str:
             free_motion.page(found["free"], found["floor"]),
             angles.page(found["angles"]),
             normalization.page(found["normalization"]),
+            same_person.page(found.get("same_person", {})),
             papers_metrics.page(found["paper"], found["skipped"]),
             repeatability.page(found["halves"]),
+            bends.page(found.get("bends", {})),
             times.page(found["times"]),
             vendor.page(found["vendor"]),
         ]

@@ -1,4 +1,4 @@
-"""Sections 5 and 6 need solved recordings: synthetic ones and every usable real one."""
+"""Sections 4 to 6 and 8 need solved recordings: synthetic ones and every usable real one."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.axes import same_person
+from benchmarks.axes.bends import bend_row
 from benchmarks.axes.papers_metrics import joint_rows
 from benchmarks.axes.repeatability import half_rows
 from benchmarks.axes.vendor import vendor_rows
@@ -18,6 +20,7 @@ from kinesphere.skeleton import learn_model
 from kinesphere.synthetic import make_performance, spoil_with_noise, spoil_with_soft_tissue
 
 REAL = ("cmu41", "plugin-gait", "functional", "plates", "formats", "rigid-bodies")
+KNEES = {f"functional/Test_func_{side[0]}knee.c3d": f"{side}_knee" for side in ("left", "right")}
 SYNTHETIC = ("synthetic, noise-free", "synthetic, 1 mm noise", "synthetic, soft tissue")
 
 
@@ -42,13 +45,19 @@ def run_real(name: str, path: str) -> dict[str, Any]:
             "paper": joint_rows(solution.motion, solution.parameters),
             "halves": half_rows(solution.motion, solution.parameters),
             "vendor": vendor_rows(solution),
+            "frames": same_person.frames_of(name, solution.motion),
+            "bends": {
+                joint: bend_row(solution.motion, solution.parameters, joint)
+                for trial, joint in KNEES.items()
+                if name == trial
+            },
         }
     except KinesphereError as error:
         return {"name": name, "failure": str(error).partition(" (")[0].partition(";")[0]}
 
 
 def summary(real: Sequence[dict[str, Any]], made: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Return what sections 5, 6 and 8 show, by recording."""
+    """Return what sections 4, 5, 6 and 8 show, by recording."""
     usable = [r for r in real if "failure" not in r]
     paper: dict[str, list[Any]] = {}
     for result in (*made, *usable):
@@ -57,6 +66,8 @@ def summary(real: Sequence[dict[str, Any]], made: Sequence[dict[str, Any]]) -> d
         "paper": paper,
         "halves": {r["name"]: r["halves"] for r in usable},
         "vendor": {r["name"]: r["vendor"] for r in usable},
+        "same_person": same_person.summary([r["frames"] for r in usable]),
+        "bends": {joint: row for r in usable for joint, row in r["bends"].items()},
         "skipped": {r["name"]: r["failure"] for r in real if "failure" in r},
     }
 

@@ -2,6 +2,7 @@
 
 import json
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from benchmarks.axes import __main__ as main
 from benchmarks.axes import floor, free_motion, segments
 from benchmarks.axes.angles import run_cross_talk
 from benchmarks.axes.estimators import run
-from benchmarks.axes.normalization import POSES, PROTOCOLS, RULES, Protocol, record
+from benchmarks.axes.normalization import POSES, PROTOCOLS, RULES, Protocol, record, told
 from benchmarks.axes.papers_metrics import joint_rows, measured_rows, pooled, with_random_axes
 from benchmarks.axes.repeatability import (
     contradictions,
@@ -19,6 +20,7 @@ from benchmarks.axes.repeatability import (
 )
 from numpy.testing import assert_allclose
 
+from kinesphere.geometry.rotations import rotation_angle
 from kinesphere.normalization import normalize
 from kinesphere.parameterization import parameterize
 from kinesphere.synthetic import make_actor, make_performance
@@ -142,7 +144,7 @@ def test_each_functional_trial_tells_of_its_own_joint():
 
 def test_recordings_hold_the_actors_frames(rng):
     skeleton = make_actor(rng).skeleton
-    motion, true = record(rng, skeleton, PROTOCOLS["poses of all kinds"])
+    motion, true, _ = record(rng, skeleton, PROTOCOLS["poses of all kinds"])
     turns = np.swapaxes(true, -1, -2) @ motion.rotations
     assert_allclose(turns, np.broadcast_to(turns[0], turns.shape), atol=1e-12)
     lines = motion.rotations @ np.array([x.long_axis for x in motion.skeleton.limbs])[..., None]
@@ -156,10 +158,29 @@ def test_the_default_frames_are_the_same_where_nothing_scatters(rng, monkeypatch
     for rule, settings in RULES.items():
         frames = []
         for _ in range(2):
-            motion, true = record(rng, skeleton, Protocol("stands", 2, 0))
+            motion, true, _ = record(rng, skeleton, Protocol("stands", 2, 0))
             normalized = normalize(motion, settings).rotations[0]
             frames.append(np.swapaxes(true[0], -1, -2) @ normalized)
         assert_allclose(frames[0], frames[1], atol=1e-7, err_msg=rule)
+
+
+def test_the_oracle_averages_the_stances_and_nothing_else(rng):
+    skeleton = make_actor(rng).skeleton
+    motion, true, standing = record(rng, skeleton, PROTOCOLS["poses of all kinds"])
+    assert standing.sum() == standing.size / 2
+    frames = told(motion, true, standing)
+    off = rotation_angle(frames)
+    assert off[0] < 1e-9  # the root is the body
+    assert 0.01 < off[1:].mean() < 0.2
+    # other poses may be anything
+    others = replace(
+        motion, rotations=np.where(standing[:, None, None, None], motion.rotations, np.eye(3))
+    )
+    assert_allclose(
+        motion.rotations[0].swapaxes(1, 2) @ true[0] @ frames,
+        others.rotations[0].swapaxes(1, 2) @ true[0] @ told(others, true, standing),
+        atol=1e-12,
+    )
 
 
 def test_poses_are_of_joints_that_the_actor_has(rng):

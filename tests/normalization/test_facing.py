@@ -188,6 +188,60 @@ def test_lateral_frames_hold_the_lateral_axis_and_lean_on_the_vertical(rng):
     assert_allclose(np.linalg.det(frames[good]), 1.0)
 
 
+SHOULDERS_HIPS = np.array([[0, 0.25, -0.18], [0, 0.25, 0.18], [0, -0.25, -0.09], [0, -0.25, 0.09]])
+"""m, left and right shoulder, left and right hip of a body with equal sides."""
+
+
+def lines(joints):
+    """Return what runs across and along trunks of four joints each, (n, 4, 3) → (n, 3) twice."""
+    left, right = joints[:, [0, 2]], joints[:, [1, 3]]
+    middles = (left + right) / 2
+    return (right - left).sum(axis=1), middles[:, 0] - middles[:, 1]
+
+
+def test_leaning_frames_are_the_least_squares_fit_of_a_body_with_equal_sides(rng):
+    turns = Rotation.random(40, rng=rng)
+    off = rng.normal(scale=0.004, size=(40, 4, 3))
+    joints = np.einsum("nij,kj->nki", turns.as_matrix(), SHOULDERS_HIPS) + off
+    frames = lateral_frames(*lines(joints), lean=True)
+    fitted = []
+    for seen in joints:
+        fit, _ = Rotation.align_vectors(seen - seen.mean(axis=0), SHOULDERS_HIPS)
+        fitted.append(fit.as_matrix())
+    apart = Rotation.from_matrix(np.swapaxes(np.array(fitted), 1, 2) @ frames).as_rotvec()
+    roll = np.abs(np.rad2deg(apart[:, 0]))
+    stiff = lateral_frames(*lines(joints))
+    kept = Rotation.from_matrix(np.swapaxes(np.array(fitted), 1, 2) @ stiff).as_rotvec()
+    # weighs pairs as the sum of their lengths, not of their squares: that is all of the difference
+    assert roll.max() < 0.15 * np.abs(np.rad2deg(kept[:, 0])).max()
+    true = turns.as_matrix()
+    errors = [
+        np.rad2deg(Rotation.from_matrix(np.swapaxes(true, 1, 2) @ it).magnitude()).mean()
+        for it in (frames, stiff)
+    ]
+    assert errors[0] < 0.95 * errors[1]
+
+
+def test_leaning_frames_are_frames_exact_without_errors_and_mirrored_with_the_body(rng):
+    turns = Rotation.random(9, rng=rng).as_matrix()
+    joints = np.einsum("nij,kj->nki", turns, SHOULDERS_HIPS)
+    assert_allclose(lateral_frames(*lines(joints), lean=True), turns, atol=1e-12)
+    joints = joints + rng.normal(scale=0.02, size=joints.shape)
+    joints[3, 1] = np.nan
+    frames = lateral_frames(*lines(joints), lean=True)
+    assert np.isnan(frames[3]).all()
+    mirror = np.diag([1.0, 1.0, -1.0])
+    mirrored = lateral_frames(*lines(joints[:, [1, 0, 3, 2]] @ mirror), lean=True)
+    assert_allclose(mirrored, mirror @ frames @ mirror, atol=1e-12)
+    known = np.delete(np.arange(9), 3)
+    assert_allclose(np.linalg.det(frames[known]), 1.0)
+    assert_allclose(
+        np.swapaxes(frames, 1, 2)[known] @ frames[known], np.tile(np.eye(3), (8, 1, 1)), atol=1e-12
+    )
+    across, _ = lines(joints)
+    assert np.isnan(lateral_frames(across, 2 * across, lean=True)).all()
+
+
 @pytest.mark.parametrize("lean_deg", [0.0, 45.0])
 def test_the_plane_gives_the_papers_axes(lean_deg, rng):
     """Normal of the best plane, up projected into it, and the third across both."""

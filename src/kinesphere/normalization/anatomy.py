@@ -13,6 +13,9 @@ from kinesphere.normalization.limb_lines import far_end, main_direction, middle_
 BODY_LIMBS = ("pelvis", "trunk")
 """Limbs that get the body frame itself."""
 
+PAIRS = ("shoulder", "hip")
+"""Joints on either side of the trunk, whose pairs tell the body's right."""
+
 CANONICAL = {
     "head": (0.0, 1.0, 0.0),
     "upper_arm": (0.0, -1.0, 0.0),
@@ -72,7 +75,7 @@ class Anatomy:
         """``shoulder``, ``hip`` → (left, right) joint, where both are there."""
         return {
             name: (self.joints[f"left_{name}"], self.joints[f"right_{name}"])
-            for name in ("shoulder", "hip")
+            for name in PAIRS
             if f"left_{name}" in self.joints and f"right_{name}" in self.joints
         }
 

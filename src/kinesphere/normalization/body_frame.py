@@ -16,11 +16,13 @@ TURNED_ROUND = np.diag([-1.0, 1.0, -1.0])
 _ACROSS = 0.94  # share of up along the plane's normal from which the body lies, not stands
 
 
-def lateral_frames(to_right: Array, upward: Array) -> Array:
+def lateral_frames(to_right: Array, upward: Array, *, lean: bool = False) -> Array:
     """Return body frames from a direction across the body and one along it.
 
-    The lateral axis is kept, the vertical made perpendicular to it: pairs of joints are surer than
-    the line between their middles.
+    Both tell how far the body leans sideways, and disagree. By default the lateral axis is kept;
+    with ``lean`` each counts by what an error of the same size at every joint does to it, which is
+    the least-squares fit of a body with equal sides: the trunk is longer than it is wide, and a
+    raised shoulder tilts the line between both but not the trunk's.
 
     Parameters
     ----------
@@ -28,6 +30,8 @@ def lateral_frames(to_right: Array, upward: Array) -> Array:
         From left to right: the sum over the pairs, so wide pairs count more.
     upward : (n, 3) m
         From the hips to the shoulders, or the world's up.
+    lean
+        Whether ``upward`` is such a line between joints of the body.
 
     Returns
     -------
@@ -35,7 +39,14 @@ def lateral_frames(to_right: Array, upward: Array) -> Array:
         ``world_from_body``; NaN where a direction is NaN or both are parallel.
     """
     z = unit(to_right)
-    y = unit(upward - (upward * z).sum(axis=-1, keepdims=True) * z)
+    sideways = (upward * z).sum(axis=-1, keepdims=True)
+    y = unit(upward - sideways * z)
+    if lean:
+        tall = (upward * upward).sum(axis=-1, keepdims=True)
+        wide = (to_right * to_right).sum(axis=-1, keepdims=True) / 4  # half of it on each side
+        along = (upward * y).sum(axis=-1, keepdims=True)
+        turn = tall / (tall + wide) * np.arctan2(sideways, along)
+        y, z = np.cos(turn) * y + np.sin(turn) * z, np.cos(turn) * z - np.sin(turn) * y
     return np.stack([np.cross(y, z), y, z + 0.0 * y], axis=-1)  # NaN in one is NaN in all
 
 

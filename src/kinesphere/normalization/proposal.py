@@ -6,6 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array, vector_from_direction
 from kinesphere.errors import DegenerateMotion
+from kinesphere.normalization.anatomy import PAIRS
 from kinesphere.normalization.body_frame import face_the_same_way, lateral_frames, plane_frames
 from kinesphere.normalization.default_position import JOINTS_OF_A_PLANE
 from kinesphere.normalization.samples import UP, Samples
@@ -45,10 +46,12 @@ def propose_bodies(
     named = bool(np.isfinite(across).any())
     if settings.body == "lateral" and named:
         upward = samples.trunk_lines
+        # legs and the world's up tell how somebody stands, not how the body is made
+        lean = settings.vertical == "trunk" and len(anatomy.pairs) == len(PAIRS)
         if settings.vertical == "up" or not np.isfinite(upward).any():
-            upward = np.broadcast_to(UP, across.shape)
+            upward, lean = np.broadcast_to(UP, across.shape), False
         return Proposal(
-            root_from_body=roots @ lateral_frames(across, upward),
+            root_from_body=roots @ lateral_frames(across, upward, lean=lean),
             method="lateral",
             named=True,
             needs=f"left and right {' and '.join(anatomy.pairs)}",

@@ -3,11 +3,18 @@
 import numpy as np
 
 from kinesphere.data import Array, TopologicalModel
-from kinesphere.skeleton.averages import mean_seen
+from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.body import Body
 
 FLEXED_SHARE = 0.05
 """Least share of frames in which a hinge must be flexed for its axis to be believed."""
+STEADINESS = 0.7
+"""Least length of the mean of a hinge's normals, as a share of their mean length."""
+STRAIGHT_SHARE = 0.05
+"""Share of a recording in which a hinge counts as being as straight as it ever is."""
+LIMB_AS_WAY = 0.1
+"""What a limb's direction counts in the plane of flexion, as a way of so many lengths: enough to
+complete short ways, too little to tilt long ones."""
 UPRIGHT = np.cos(np.deg2rad(30.0))
 """Least cosine between a trunk and the vertical for the world's up to be the body's."""
 
@@ -45,21 +52,57 @@ def right_from_parent(body: Body, parent: Body) -> Array | None:
     return unit(mean) if np.linalg.norm(mean) > 0.3 else None
 
 
-def right_from_hinge(body: Body, normals: Array) -> Array | None:
+def right_from_hinge(normals: Array) -> Array | None:
     """Return the normal of two limbs' plane as the proximal one sees it, (3,); None if too rare.
 
     Parameters
     ----------
     normals : (n_sample, 3)
-        In the world, NaN where the joint is not flexed.
+        In the limb, NaN where the joint is not flexed.
     """
-    local = (np.swapaxes(body.rotations, 1, 2) @ normals[..., None])[..., 0]
-    known = np.isfinite(local).all(axis=1)
-    if known.sum() < max(5, FLEXED_SHARE * len(local)):
+    known = np.isfinite(normals).all(axis=1)
+    if known.sum() < max(5, FLEXED_SHARE * len(normals)):
         return None
-    mean = local[known].mean(axis=0)
-    steadiness = np.linalg.norm(mean) / np.linalg.norm(local[known], axis=1).mean()
-    return unit(mean) if steadiness > 0.7 else None
+    mean = normals[known].mean(axis=0)
+    steadiness = np.linalg.norm(mean) / np.linalg.norm(normals[known], axis=1).mean()
+    return unit(mean) if steadiness > STEADINESS else None
+
+
+def right_from_bending(along: Array, seen: Array, sign: float, flexed: float) -> Array | None:
+    """Return the same from how the limb beyond moves and not where it points; None if too little.
+
+    Markers on one side of a joint make a straight knee look bent sideways, by 20° and more where
+    those of the thigh are lateral and those of the shank in front. The ways that markers have come
+    since the hinge was straightest lie in the plane of flexion wherever they sit. A short way has
+    one direction alone; the limb itself is the other, which its far marker tells to 7 to 10°.
+
+    Parameters
+    ----------
+    along : (3,)
+        Unit direction of the limb, in the limb.
+    seen : (n_sample, n_markers, 3) m
+        Markers of the limb beyond, in the limb, from its far end.
+    sign
+        +1 where cross(limb, limb beyond) points to the right, −1 where to the left.
+    flexed
+        rad, what a marker must have turned since.
+    """
+    ways = np.full(seen.shape, np.nan)
+    for i, marker in enumerate(np.moveaxis(seen, 1, 0)):
+        reach = marker @ along
+        if not np.isfinite(reach).any():
+            continue
+        straight = median_seen(marker[reach >= np.nanquantile(reach, 1 - STRAIGHT_SHARE)])
+        way = (marker - straight) / np.linalg.norm(straight)
+        turned = np.linalg.norm(way, axis=1) > 2 * np.sin(flexed / 2)
+        ways[turned, i] = way[turned]
+    rough = right_from_hinge(sign * np.cross(along, mean_seen(ways, axis=1)))
+    if rough is None:
+        return None
+    known = ways[np.isfinite(ways).all(axis=2)]
+    spread = known.T @ known / len(known) + LIMB_AS_WAY**2 * np.outer(along, along)
+    normal = np.linalg.eigh(spread)[1][:, 0]
+    return np.asarray(normal * np.sign(normal @ rough))
 
 
 def up_of_trunk(body: Body, towards_head: Array) -> Array:

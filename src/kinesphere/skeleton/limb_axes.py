@@ -3,18 +3,25 @@
 import numpy as np
 
 from kinesphere.data import Array, TopologicalModel
-from kinesphere.geometry.rigid import out_of_frame
+from kinesphere.geometry.rigid import into_frame, out_of_frame
 from kinesphere.skeleton.averages import mean_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import (
     beside,
+    right_from_bending,
     right_from_hinge,
     right_from_pairs,
     right_from_parent,
     unit,
     up_of_trunk,
 )
-from kinesphere.skeleton.neighbours import cloud, flexed_normals, hinge_sign, next_normals
+from kinesphere.skeleton.neighbours import (
+    HINGE_SIGN,
+    cloud,
+    flexed_normals,
+    hinge_sign,
+    next_normals,
+)
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree
 
@@ -61,11 +68,29 @@ def find_axes(
     if body.borrow is not None:
         right = body.borrow
     elif any(hinge_sign(joint) for joint in tree.joints if joint.parent == body.name):
-        centre = out_of_frame(body.rotations, body.shifts, body.centre[None])[:, 0]
-        towards = unit(own[:, far] - centre)
-        normals = next_normals(body.name, towards, own[:, far], tree, sample)
-        hinge = right_from_hinge(body, flexed_normals(normals, np.deg2rad(settings.flexed_deg)))
+        hinge = _right_of_hinge(body, own, far, tree, sample, np.deg2rad(settings.flexed_deg))
         right = right if hinge is None else hinge
     if not np.isfinite(long).all():
         body.up = right = None
     body.right = None if right is None else beside(right, long)
+
+
+def _right_of_hinge(
+    body: Body, own: Array, far: int, tree: Tree, sample: dict[str, Array], flexed: float
+) -> Array | None:
+    """Return the axis of the hinge beyond a limb as the limb sees it; None where it hardly bends.
+
+    Knees straighten whenever somebody stands, which tells what is bent from what only looks so;
+    elbows may never, and pronation moves the markers of a forearm.
+    """
+    assert body.centre is not None
+    beyond = [joint for joint in tree.joints if joint.parent == body.name]
+    if len(beyond) == 1 and hinge_sign(beyond[0]) == HINGE_SIGN["knee"]:
+        shank = cloud(tree.markers[beyond[0].child], sample)
+        seen = into_frame(body.rotations, body.shifts, shank) - body.shape[far]
+        along = unit(body.shape[far] - body.centre)
+        return right_from_bending(along, seen, HINGE_SIGN["knee"], flexed)
+    centre = out_of_frame(body.rotations, body.shifts, body.centre[None])[:, 0]
+    towards = unit(own[:, far] - centre)
+    normals = flexed_normals(next_normals(body.name, towards, own[:, far], tree, sample), flexed)
+    return right_from_hinge((np.swapaxes(body.rotations, 1, 2) @ normals[..., None])[..., 0])
