@@ -34,6 +34,8 @@ FEW = 10
 """Poses below which nothing is said about skin."""
 STILL = 1e-3
 """rad, rms rotation of a joint below which nothing can be said to go with it."""
+DOUBT = 0.5
+"""Relative standard deviation of what is known of shake."""
 ROUNDING = 1e-13
 """Share of each unknown's own weight that keeps equations solvable: what rounding leaves."""
 SETTLED = 1e-6
@@ -205,29 +207,70 @@ def fit_through_skin(
     z = np.zeros(12 * modes.shape[1])
     ones = np.concatenate([np.zeros(6), np.ones(len(z))])
     for _ in range(rounds):
-        residual, columns = _equations(view, turning, x, inner, skin)
+        residual, columns, white = _equations(view, turning, x, inner, skin)
         scale, soft = soft_weights(lengths(residual + columns[:, :, 6:] @ z)[:, None], None, 3)
         w = share * soft[:, 0] * (looks / scale[0] ** 2)
         flat = columns.reshape(-1, columns.shape[2])
         weighed = (columns * w[:, None, None]).reshape(flat.shape)
         told = weighed.T @ flat
-        whole = told + np.diag(ones)
-        whole[:3, :3] += prior
-        whole[3:6, 3:6] += 1e-9 * np.trace(told[3:6, 3:6]) * np.eye(3)
+        rest = told[3:, 3:] + np.diag(ones[3:])
+        rest[:3, :3] += 1e-9 * np.trace(told[3:6, 3:6]) * np.eye(3)
         gradient = weighed.T @ residual.ravel()
-        gradient[:3] += prior @ (x - expected)
-        step = -_solve(whole, gradient)
-        length = float(np.linalg.norm(step[:3]))
+        shake, drawn = _shake(view, turning, x, white, w * min(1.0, scale[0] ** 2))
+        follow = _solve(rest, told[3:, :3])
+        left = told[:3, :3] - told[:3, 3:] @ follow
+        kept, heard = _cleared(left, shake, drawn)
+        pull = prior @ (x - expected)
+        pull = pull + heard @ (gradient[:3] - follow.T @ gradient[3:] - drawn)
+        step = -_solve(prior + heard @ kept, pull)
+        length = float(np.linalg.norm(step))
         short = min(1.0, 0.05 / max(length, 1e-12))
-        x, inner, z = x + short * step[:3], inner + short * step[3:6], step[6:]
+        others = -_solve(rest, gradient[3:]) - follow @ step
+        x, inner, z = x + short * step, inner + short * others[:3], others[3:]
         if length < SETTLED:
             break
     # for what is told, skin may be as large as settings allow for
-    rest = whole[3:, 3:] - (1 - (RIGID / hidden) ** 2) * np.diag(ones[3:])
-    left = told[:3, :3] - whole[:3, 3:] @ _solve(rest, whole[3:, :3])
-    shaky = _shaking(view, turning, float(scale[0]), looks)
-    whole_told = told[:3, :3] if modes.shape[1] else left
-    return SkinFit(x, _less_shaky(left, whole_told, shaky))
+    rest = rest - (1 - (RIGID / hidden) ** 2) * np.diag(ones[3:])
+    left = told[:3, :3] - told[:3, 3:] @ _solve(rest, told[3:, :3])
+    kept, heard = _cleared(left, shake, drawn)
+    return SkinFit(x, heard @ kept)
+
+
+def _shake(
+    view: View, turning: Turning, x: Array, white: Array, weights: Array
+) -> tuple[Array, Array]:
+    """Return what shaking orientations feign: information (3, 3) and gradient (3,) by the centre."""
+    back = turning.back
+    metric = white.T @ white
+    q, linear = _noise_gradient(metric, turning.pose)
+    shake = np.einsum("n,nki,kl,nlj->ij", weights, back, q, back)
+    drawn = np.einsum("n,nki,nk->i", weights, back, turning.place(x) @ q + linear)
+    carried = np.einsum("n,nki,kl,nlj->ij", weights, back, metric, back)
+    q, linear = _noise_gradient(carried, view.pose)
+    return shake + q, drawn + q @ x + linear
+
+
+_ARMS = np.concatenate([-hat(np.eye(3)), np.zeros((3, 3, 3))], axis=2)
+_STILL = np.concatenate([np.zeros((3, 3)), np.eye(3)], axis=1)
+
+
+def _noise_gradient(metric: Array, pose: Array) -> tuple[Array, Array]:
+    """Return half the gradient of tr(metric · point_covariance(pose, p)) as q, l of q p + l."""
+    moved = metric @ _ARMS @ pose  # (3, 3, 6)
+    return np.einsum("iab,jab->ij", moved, _ARMS), np.einsum("iab,ab->i", moved, _STILL)
+
+
+def _cleared(left: Array, shake: Array, drawn: Array) -> tuple[Array, Array]:
+    """Return what is left of information without shake, and how gradients are heard."""
+    values, vectors = np.linalg.eigh(left)
+    root = vectors * np.sqrt(np.maximum(values, 1e-12 * values[2]))
+    inverse = vectors / np.sqrt(np.maximum(values, 1e-12 * values[2]))
+    told, axes = np.linalg.eigh(np.eye(3) - inverse.T @ shake @ inverse)
+    axes = root @ axes
+    kept = (axes * np.maximum(told, 0.0)) @ axes.T
+    doubt = left + DOUBT**2 * np.outer(drawn, drawn)
+    heard = np.linalg.solve(doubt, kept).T
+    return kept, heard
 
 
 def _solve(matrix: Array, right: Array) -> Array:
@@ -247,7 +290,7 @@ def _root(covariance: Array) -> Array:
 
 def _equations(
     view: View, turning: Turning, x: Array, inner: Array, skin: _Skin
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array, Array]:
     """Return residuals (n, 3) over their noise, and their derivatives (n, 3, 6 + 12 k).
 
     By the centre in either limb, and by the maps from the joint's rotation to their poses' errors.
@@ -270,22 +313,4 @@ def _equations(
         columns[:, :, 6:middle] = moved.reshape(n, 3, -1)
         moved = -(w @ own)[None, :, None] * skin.modes[:, None, :, None]
         columns[:, :, middle:] = moved.reshape(n, 3, -1)
-    return (turning.place(x) - inner) @ w.T, columns
-
-
-def _shaking(view: View, turning: Turning, scale: float, looks: float) -> float:
-    """Return the information, 1/m², that orientations seem to give because they shake."""
-    shaky = (np.trace(turning.pose[:3, :3]) + np.trace(view.pose[:3, :3])) * 2 / 3
-    return float(shaky * min(1.0, scale**2) * looks / (scale * turning.noise) ** 2)
-
-
-def _less_shaky(left: Array, whole: Array, shaky: float) -> Array:
-    """Return what is left of information less the share of the whole that is orientations' shake.
-
-    (3, 3) 1/m²; in directions about which the limbs hardly turn against each other that is all.
-    """
-    values, vectors = np.linalg.eigh(whole)
-    share = np.sqrt(np.maximum(1.0 - shaky / np.maximum(values, 1e-300), 0.0))
-    root = (vectors * share) @ vectors.T
-    cleared: Array = root @ left @ root
-    return cleared
+    return (turning.place(x) - inner) @ w.T, columns, w
