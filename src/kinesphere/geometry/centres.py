@@ -10,7 +10,7 @@ from kinesphere.geometry.centre_terms import find_information, find_terms
 from kinesphere.geometry.centre_views import Turning as Turning
 from kinesphere.geometry.centre_views import View as View
 from kinesphere.geometry.medians import column_medians
-from kinesphere.geometry.skin import FEW, fit_through_skin, hinge_axis
+from kinesphere.geometry.skin import FEW, fit_through_skin, hinge_axis, main_axis
 from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
@@ -102,15 +102,18 @@ def fit_centre(
     x, algebraic = expected, sphere_centre(view.points, expected)
     if np.linalg.norm(algebraic - expected) < FAR * spread:
         x = min((expected, algebraic), key=lambda start: _cost(view, start))
-    plain = prior = np.eye(3) / spread**2
-    x, information = _fit(view, x, expected, 0.01 * prior, hidden, rounds)
-    along = None if hinge is None else _open_axis(view, information, spread, hinge, hidden)
-    if along is not None:
-        prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
+    prior = np.eye(3) / spread**2
+    solid = view.turning is not None and view.turning.skin is not None
+    axis = main_axis(view) if solid and hinge is not None else None
+    if axis is not None:
+        prior = prior + (tighter**2 - 1) / spread**2 * np.outer(axis, axis)
+    else:
+        x, information = _fit(view, x, expected, 0.01 * prior, hidden, rounds)
+        along = None if hinge is None else _open_axis(view, information, spread, hinge, hidden)
+        if along is not None:
+            prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
     x, information = _fit(view, x, expected, prior, hidden, rounds)
-    if along is not None:  # what was not asked has told nothing
-        across = np.eye(3) - np.outer(along, along)
-        information = across @ information @ across
+    plain = prior
     return CentreFit(
         centre=x,
         noise=_robust_noise(view, x),

@@ -98,6 +98,16 @@ def hinge_axis(view: View, hidden: float) -> Array | None:
     return axis
 
 
+def main_axis(view: View) -> Array | None:
+    turning = view.turning
+    if turning is None or turning.known.sum() < FEW:
+        return None
+    r = turning.rotations[turning.known]
+    turns = joint_turns(r)
+    axis: Array = mean_rotation(r) @ np.linalg.eigh(turns.T @ turns)[1][:, 2]
+    return axis
+
+
 def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
     """Return how far each marker moves in its limb with a joint, m rms in each direction, (m,).
 
