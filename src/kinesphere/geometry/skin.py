@@ -34,6 +34,7 @@ FEW = 10
 """Poses below which nothing is said about skin."""
 STILL = 1e-3
 """rad, rms rotation of a joint below which nothing can be said to go with it."""
+LUCK = 1.0
 DOUBT = 0.5
 """Relative standard deviation of what is known of shake."""
 ROUNDING = 1e-13
@@ -208,7 +209,8 @@ def fit_through_skin(
     assert turning.skin is not None
     assert turning.skin_seeing is not None
     rotations = turning.rotations[turning.known]
-    modes, looks = joint_modes(rotations), looks / hidden**2
+    modes, poses = joint_modes(rotations), looks
+    near = _nearest(turning.back)
     share = np.full(len(modes), 1 / len(modes))
     if has_one_axis(joint_turns(rotations), feigned(view, hidden)):
         modes, share = modes[:, :0], share * pose_weights(turning.back)
@@ -217,8 +219,11 @@ def fit_through_skin(
     z = np.zeros(12 * modes.shape[1])
     ones = np.concatenate([np.zeros(6), np.ones(len(z))])
     for _ in range(rounds):
-        residual, columns, white = _equations(view, turning, x, inner, skin)
+        residual, columns, whitening = _equations(view, turning, x, inner, skin)
         scale, soft = soft_weights(lengths(residual + columns[:, :, 6:] @ z)[:, None], None, 3)
+        strays = residual + columns[:, :, 6:] @ z
+        white = np.median(((strays - strays[near]) ** 2).sum(1)) / 2 / np.median((strays**2).sum(1))
+        looks = _looks(float(white), len(strays), poses, hidden)
         w = share * soft[:, 0] * (looks / scale[0] ** 2)
         flat = columns.reshape(-1, columns.shape[2])
         weighed = (columns * w[:, None, None]).reshape(flat.shape)
@@ -226,7 +231,7 @@ def fit_through_skin(
         rest = told[3:, 3:] + np.diag(ones[3:])
         rest[:3, :3] += 1e-9 * np.trace(told[3:6, 3:6]) * np.eye(3)
         gradient = weighed.T @ residual.ravel()
-        shake, drawn = _shake(view, turning, x, white, w * min(1.0, scale[0] ** 2))
+        shake, drawn = _shake(view, turning, x, whitening, w * min(1.0, scale[0] ** 2))
         follow = _solve(rest, told[3:, :3])
         left = told[:3, :3] - told[:3, 3:] @ follow
         kept, heard = _cleared(left, shake, drawn)
@@ -244,6 +249,19 @@ def fit_through_skin(
     left = told[:3, :3] - told[:3, 3:] @ _solve(rest, told[3:, :3])
     kept, heard = _cleared(left, shake, drawn)
     return SkinFit(x, heard @ kept)
+
+
+def _nearest(rotations: Array) -> NDArray[np.int64]:
+    flat = rotations.reshape(len(rotations), 9)
+    alike = flat @ flat.T
+    np.fill_diagonal(alike, -np.inf)
+    return alike.argmax(axis=1)
+
+
+def _looks(white: float, n: int, poses: float, hidden: float) -> float:
+    white = min(white, 1.0)
+    lasting = 1 - white + LUCK / np.sqrt(n)
+    return 1 / (white / n + hidden**2 * lasting / poses)
 
 
 def _shake(
