@@ -137,10 +137,14 @@ def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
 
 def pose_weights(rotations: Array) -> Array:
     """Return weights that make every pose count alike, however long it was held, (n,) of mean 1."""
+    weights = 1 / crowds(rotations)
+    return np.asarray(weights / weights.mean())
+
+
+def crowds(rotations: Array) -> Array:
     flat = rotations.reshape(len(rotations), 9)
     angle2 = np.maximum(3.0 - flat @ flat.T, 0.0)  # nearly the square of the angle between them
-    weights = 1 / np.exp(-angle2 / (2 * DENSE**2)).sum(axis=1)
-    return np.asarray(weights / weights.mean())
+    return np.asarray(np.exp(-angle2 / (2 * DENSE**2)).sum(axis=1))
 
 
 class SkinFit(NamedTuple):
@@ -211,9 +215,9 @@ def fit_through_skin(
     rotations = turning.rotations[turning.known]
     modes, poses = joint_modes(rotations), looks
     near = _nearest(turning.back)
-    share = np.full(len(modes), 1 / len(modes))
+    crowd = np.ones(len(modes))
     if has_one_axis(joint_turns(rotations), feigned(view, hidden)):
-        modes, share = modes[:, :0], share * pose_weights(turning.back)
+        modes, crowd = modes[:, :0], crowds(turning.back)
     skin = _Skin(modes, RIGID * _root(turning.skin_seeing), RIGID * _root(turning.skin))
     x, inner = start, turning.place(start).mean(axis=0)
     z = np.zeros(12 * modes.shape[1])
@@ -223,7 +227,11 @@ def fit_through_skin(
         scale, soft = soft_weights(lengths(residual + columns[:, :, 6:] @ z)[:, None], None, 3)
         strays = residual + columns[:, :, 6:] @ z
         white = np.median(((strays - strays[near]) ** 2).sum(1)) / 2 / np.median((strays**2).sum(1))
-        looks = _looks(float(white), len(strays), poses, hidden)
+        white = float(min(white, 1.0))
+        lasting = 1 - white + LUCK / np.sqrt(len(strays))
+        share = 1 / (white + hidden**2 * lasting * crowd)
+        share = share / share.sum()
+        looks = _looks(white, len(strays), poses, hidden)
         w = share * soft[:, 0] * (looks / scale[0] ** 2)
         flat = columns.reshape(-1, columns.shape[2])
         weighed = (columns * w[:, None, None]).reshape(flat.shape)
