@@ -106,7 +106,9 @@ def fit_centre(
     solid = view.turning is not None and view.turning.skin is not None
     axis = main_axis(view) if solid and hinge is not None else None
     if axis is not None:
-        prior = prior + (tighter**2 - 1) / spread**2 * np.outer(axis, axis)
+        axis, strays = axis
+        times = 1 / (1 / tighter**2 + strays) - 1
+        prior = prior + max(times, 0.0) / spread**2 * np.outer(axis, axis)
     else:
         x, information = _fit(view, x, expected, 0.01 * prior, hidden, rounds)
         along = None if hinge is None else _open_axis(view, information, spread, hinge, hidden)

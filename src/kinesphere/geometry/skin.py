@@ -105,8 +105,9 @@ def main_axis(view: View) -> Array | None:
         return None
     r = turning.rotations[turning.known]
     turns = joint_turns(r)
-    axis: Array = mean_rotation(r) @ np.linalg.eigh(turns.T @ turns)[1][:, 2]
-    return axis
+    values, vectors = np.linalg.eigh(turns.T @ turns)
+    axis: Array = mean_rotation(r) @ vectors[:, 2]
+    return axis, values[1] / max(values[2], 1e-300)
 
 
 def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
