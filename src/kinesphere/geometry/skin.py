@@ -13,8 +13,16 @@ from numpy.typing import NDArray
 
 from kinesphere.geometry.centre_terms import soft_weights
 from kinesphere.geometry.centre_views import Turning, View
+from kinesphere.geometry.joint_turns import (
+    crowds,
+    has_one_axis,
+    joint_modes,
+    joint_turns,
+    nearest_poses,
+)
 from kinesphere.geometry.pose_errors import point_covariance
-from kinesphere.geometry.rotations import hat, mean_rotation, rotation_log
+from kinesphere.geometry.rotations import hat
+from kinesphere.geometry.shake import clear_of_shake, doubt_of, find_shake
 from kinesphere.geometry.vectors import is_seen, lengths
 
 Array = NDArray[np.float64]
@@ -26,50 +34,14 @@ NONE = 1e-12
 RIGID = 1.5
 """How many times more of the skin's movement is rigid, and shows in no residual, than is not: on
 synthetic skin the errors of hips are least from 1 to 1.5."""
-ONE_AXIS = 0.05
-"""Share of the widest rotation's variance below which the second-widest counts as none."""
-DENSE = np.deg2rad(5.0)
-"""rad, poses of a hinge nearer to each other than this share their weight."""
 FEW = 10
 """Poses below which nothing is said about skin."""
-STILL = 1e-3
-"""rad, rms rotation of a joint below which nothing can be said to go with it."""
-LUCK = 1.0
-DOUBT = 0.5
-"""Relative standard deviation of what is known of shake."""
+LUCK = 3.0
+"""Standard errors of the share of residuals that lasts by which it may be larger than it looks."""
 ROUNDING = 1e-13
 """Share of each unknown's own weight that keeps equations solvable: what rounding leaves."""
 SETTLED = 1e-6
 """m, step that ends the fit."""
-
-
-def joint_turns(rotations: Array) -> Array:
-    """Return the joint's rotation away from its mean, rad; (n, 3, 3) → (n, 3)."""
-    turns = rotation_log(mean_rotation(rotations).T @ rotations)
-    centred: Array = turns - turns.mean(axis=0)
-    return centred
-
-
-def joint_modes(rotations: Array) -> Array:
-    """Return the joint's rotation away from its mean, over its rms; (n, 3, 3) → (n, 3)."""
-    turns = joint_turns(rotations)
-    modes: Array = turns / max(float(np.sqrt((turns**2).sum(axis=1).mean() / 3)), STILL)
-    return modes
-
-
-def has_one_axis(turns: Array, blur: float) -> bool:
-    """Return whether a joint turns about one axis alone, from its turns (n, 3) rad.
-
-    Parameters
-    ----------
-    turns
-        As `joint_turns` returns them.
-    blur
-        rad², variance of the rotation that noise and skin can feign: what turns farther than that
-        about a second axis is a second axis, however small.
-    """
-    variances = np.linalg.eigvalsh(turns.T @ turns / len(turns))
-    return bool(variances[1] < min(ONE_AXIS * variances[2], blur))
 
 
 def feigned(view: View, hidden: float) -> float:
@@ -81,33 +53,6 @@ def feigned(view: View, hidden: float) -> float:
     skin, noise = (turning.skin, turning.skin_seeing), (turning.pose, view.pose)
     most = [float(np.linalg.eigvalsh(c[:3, :3])[-1]) for c in (*skin, *noise)]
     return hidden**2 * (most[0] + most[1]) + most[2] + most[3]
-
-
-def hinge_axis(view: View, hidden: float) -> Array | None:
-    """Return the one axis a joint turns about, (3,); None if it has more.
-
-    In the frame of the seeing limb. Fewer than `FEW` poses tell nothing.
-    """
-    turning = view.turning
-    if turning is None or turning.skin is None or turning.known.sum() < FEW:
-        return None
-    r = turning.rotations[turning.known]
-    turns = joint_turns(r)
-    if not has_one_axis(turns, feigned(view, hidden)):
-        return None
-    axis: Array = mean_rotation(r) @ np.linalg.eigh(turns.T @ turns)[1][:, 2]
-    return axis
-
-
-def main_axis(view: View) -> Array | None:
-    turning = view.turning
-    if turning is None or turning.known.sum() < FEW:
-        return None
-    r = turning.rotations[turning.known]
-    turns = joint_turns(r)
-    values, vectors = np.linalg.eigh(turns.T @ turns)
-    axis: Array = mean_rotation(r) @ vectors[:, 2]
-    return axis, values[1] / max(values[2], 1e-300)
 
 
 def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
@@ -134,18 +79,6 @@ def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
     # the fit itself takes up six of the coordinates: what is left looks smaller than it is
     noise *= np.sqrt(3 * n / max(3 * n - 6, 1))
     return np.where(noise > LEAST, noise, NONE)
-
-
-def pose_weights(rotations: Array) -> Array:
-    """Return weights that make every pose count alike, however long it was held, (n,) of mean 1."""
-    weights = 1 / crowds(rotations)
-    return np.asarray(weights / weights.mean())
-
-
-def crowds(rotations: Array) -> Array:
-    flat = rotations.reshape(len(rotations), 9)
-    angle2 = np.maximum(3.0 - flat @ flat.T, 0.0)  # nearly the square of the angle between them
-    return np.asarray(np.exp(-angle2 / (2 * DENSE**2)).sum(axis=1))
 
 
 class SkinFit(NamedTuple):
@@ -185,12 +118,14 @@ def fit_through_skin(
     each pose would have if its markers moved `RIGID` times as far as `skin_noise` says. Residuals
     have a soft-L1 loss. The information reckons with ``hidden`` instead of `RIGID`.
 
-    Errors that are not linear in the rotation stay, and no number of poses averages them out: as
-    everywhere, a look is worth 1/``hidden``² of what its residual says.
+    Errors that are not linear in the rotation stay. What of the residuals is alike in poses alike
+    no number of frames averages out: of that, a look is worth 1/``hidden``².
 
-    A hinge tells nothing apart that is linear in its one angle: there skin is not modelled, and
-    poses count alike however long they were held, so that skin errs alike in trials that dwell
-    elsewhere.
+    A hinge tells nothing apart that is linear in its one angle: there skin is not modelled, and as
+    far as errors last, poses count alike however long they were held, so that skin errs alike in
+    trials that dwell elsewhere.
+
+    What noise in the orientations feigns is taken off: see `kinesphere.geometry.shake`.
 
     Parameters
     ----------
@@ -214,100 +149,69 @@ def fit_through_skin(
     assert turning.skin is not None
     assert turning.skin_seeing is not None
     rotations = turning.rotations[turning.known]
-    modes, poses = joint_modes(rotations), looks
-    near = _nearest(turning.back)
+    modes, near = joint_modes(rotations), nearest_poses(turning.back)
     crowd = np.ones(len(modes))
     if has_one_axis(joint_turns(rotations), feigned(view, hidden)):
         modes, crowd = modes[:, :0], crowds(turning.back)
     skin = _Skin(modes, RIGID * _root(turning.skin_seeing), RIGID * _root(turning.skin))
     x, inner = start, turning.place(start).mean(axis=0)
     z = np.zeros(12 * modes.shape[1])
-    ones = np.concatenate([np.zeros(6), np.ones(len(z))])
+    ones = np.concatenate([np.zeros(3), np.ones(len(z))])
     for _ in range(rounds):
         residual, columns, whitening = _equations(view, turning, x, inner, skin)
-        scale, soft = soft_weights(lengths(residual + columns[:, :, 6:] @ z)[:, None], None, 3)
         strays = residual + columns[:, :, 6:] @ z
-        white = np.median(((strays - strays[near]) ** 2).sum(1)) / 2 / np.median((strays**2).sum(1))
-        white = float(min(white, 1.0))
-        lasting = 1 - white + LUCK / np.sqrt(len(strays))
-        share = 1 / (white + hidden**2 * lasting * crowd)
-        share = share / share.sum()
-        looks = _looks(white, len(strays), poses, hidden)
-        w = share * soft[:, 0] * (looks / scale[0] ** 2)
+        scale, soft = soft_weights(lengths(strays)[:, None], None, 3)
+        w = soft[:, 0] / scale[0] ** 2 * _worth(strays, near, crowd, looks, hidden)
         flat = columns.reshape(-1, columns.shape[2])
         weighed = (columns * w[:, None, None]).reshape(flat.shape)
-        told = weighed.T @ flat
-        rest = told[3:, 3:] + np.diag(ones[3:])
-        rest[:3, :3] += 1e-9 * np.trace(told[3:6, 3:6]) * np.eye(3)
-        gradient = weighed.T @ residual.ravel()
-        shake, drawn = _shake(view, turning, x, whitening, w * min(1.0, scale[0] ** 2))
-        follow = _solve(rest, told[3:, :3])
-        left = told[:3, :3] - told[:3, 3:] @ follow
-        kept, heard = _cleared(left, shake, drawn)
-        pull = prior @ (x - expected)
-        pull = pull + heard @ (gradient[:3] - follow.T @ gradient[3:] - drawn)
-        step = -_solve(prior + heard @ kept, pull)
+        told, gradient = weighed.T @ flat, weighed.T @ residual.ravel()
+        others = told[3:, 3:] + np.diag(ones)
+        others[:3, :3] += 1e-9 * np.trace(told[3:6, 3:6]) * np.eye(3)
+        # poses say how large their noise is, unless what is left is less
+        size = min(1.0, float(np.average((strays**2).sum(axis=1), weights=w)) / 3)
+        shake, drawn = find_shake(view, turning, x, whitening, w * size)
+        doubt = doubt_of(shake, drawn + shake @ (expected - x), prior)
+        follow = _solve(others, told[3:, :3])
+        curve, heard = clear_of_shake(told[:3, :3] - told[:3, 3:] @ follow, shake, doubt)
+        score = gradient[:3] - follow.T @ gradient[3:] - drawn
+        step = -_solve(prior + heard @ curve, prior @ (x - expected) + heard @ score)
+        moved = -_solve(others, gradient[3:]) - follow @ step
         length = float(np.linalg.norm(step))
         short = min(1.0, 0.05 / max(length, 1e-12))
-        others = -_solve(rest, gradient[3:]) - follow @ step
-        x, inner, z = x + short * step, inner + short * others[:3], others[3:]
+        x, inner, z = x + short * step, inner + short * moved[:3], moved[3:]
         if length < SETTLED:
             break
     # for what is told, skin may be as large as settings allow for
-    rest = rest - (1 - (RIGID / hidden) ** 2) * np.diag(ones[3:])
-    left = told[:3, :3] - told[:3, 3:] @ _solve(rest, told[3:, :3])
-    kept, heard = _cleared(left, shake, drawn)
-    return SkinFit(x, heard @ kept)
+    others -= (1 - (RIGID / hidden) ** 2) * np.diag(ones)
+    left = told[:3, :3] - told[:3, 3:] @ _solve(others, told[3:, :3])
+    curve, heard = clear_of_shake(left, shake, doubt)
+    return SkinFit(x, heard @ curve)
 
 
-def _nearest(rotations: Array) -> NDArray[np.int64]:
-    flat = rotations.reshape(len(rotations), 9)
-    alike = flat @ flat.T
-    np.fill_diagonal(alike, -np.inf)
-    return alike.argmax(axis=1)
+def _worth(
+    strays: Array, near: NDArray[np.int64], crowd: Array, looks: float, hidden: float
+) -> Array:
+    """Return what each pose is worth, in looks at the centre, (n,).
 
+    Of the residuals' variance the share that differs between poses most alike is noise, which
+    averages out; the rest lasts: it is alike in poses alike, as is ``hidden``² times as much that
+    no residual shows. Frames of one pose share what lasts.
 
-def _looks(white: float, n: int, poses: float, hidden: float) -> float:
-    white = min(white, 1.0)
-    lasting = 1 - white + LUCK / np.sqrt(n)
-    return 1 / (white / n + hidden**2 * lasting / poses)
-
-
-def _shake(
-    view: View, turning: Turning, x: Array, white: Array, weights: Array
-) -> tuple[Array, Array]:
-    """Return what shaking orientations feign: information (3, 3) and gradient (3,) by the centre."""
-    back = turning.back
-    metric = white.T @ white
-    q, linear = _noise_gradient(metric, turning.pose)
-    shake = np.einsum("n,nki,kl,nlj->ij", weights, back, q, back)
-    drawn = np.einsum("n,nki,nk->i", weights, back, turning.place(x) @ q + linear)
-    carried = np.einsum("n,nki,kl,nlj->ij", weights, back, metric, back)
-    q, linear = _noise_gradient(carried, view.pose)
-    return shake + q, drawn + q @ x + linear
-
-
-_ARMS = np.concatenate([-hat(np.eye(3)), np.zeros((3, 3, 3))], axis=2)
-_STILL = np.concatenate([np.zeros((3, 3)), np.eye(3)], axis=1)
-
-
-def _noise_gradient(metric: Array, pose: Array) -> tuple[Array, Array]:
-    """Return half the gradient of tr(metric · point_covariance(pose, p)) as q, l of q p + l."""
-    moved = metric @ _ARMS @ pose  # (3, 3, 6)
-    return np.einsum("iab,jab->ij", moved, _ARMS), np.einsum("iab,ab->i", moved, _STILL)
-
-
-def _cleared(left: Array, shake: Array, drawn: Array) -> tuple[Array, Array]:
-    """Return what is left of information without shake, and how gradients are heard."""
-    values, vectors = np.linalg.eigh(left)
-    root = vectors * np.sqrt(np.maximum(values, 1e-12 * values[2]))
-    inverse = vectors / np.sqrt(np.maximum(values, 1e-12 * values[2]))
-    told, axes = np.linalg.eigh(np.eye(3) - inverse.T @ shake @ inverse)
-    axes = root @ axes
-    kept = (axes * np.maximum(told, 0.0)) @ axes.T
-    doubt = left + DOUBT**2 * np.outer(drawn, drawn)
-    heard = np.linalg.solve(doubt, kept).T
-    return kept, heard
+    Parameters
+    ----------
+    strays : (n, 3)
+        Residuals.
+    near, crowd : (n,)
+        As `nearest_poses` and `crowds` return them.
+    looks
+        How many independent poses there are.
+    """
+    n = len(strays)
+    apart = np.median(((strays - strays[near]) ** 2).sum(axis=1)) / 2
+    noise = min(float(apart / max(np.median((strays**2).sum(axis=1)), 1e-300)), 1.0)
+    lasting = hidden**2 * (1 - noise + LUCK / np.sqrt(n))
+    shares = 1 / (noise + lasting * crowd)
+    return shares / shares.sum() / (noise / n + lasting / looks)
 
 
 def _solve(matrix: Array, right: Array) -> Array:
