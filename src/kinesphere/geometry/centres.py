@@ -140,9 +140,10 @@ def _single(view: View, expected: Array, tighter: float) -> Array:
     axis, strays = main_axis(view.turning)
     points, seen, *_ = view.sightings
     arm = (points[seen] - expected).sum(axis=0) if seen.any() else np.zeros(3)
-    pointing = (axis @ arm) ** 2 / max(float(arm @ arm), 1e-300)
+    pointing = float((axis @ arm) ** 2 / max(arm @ arm, 1e-300))
     times = 1 / (1 / tighter**2 + strays + pointing)
-    return max(times - 1, 0.0) * np.outer(axis, axis)
+    more: Array = max(times - 1, 0.0) * np.outer(axis, axis)
+    return more
 
 
 def _open_axis(information: Array, spread: float, hinge: Array) -> Array | None:

@@ -75,4 +75,5 @@ def nearest_poses(rotations: Array) -> NDArray[np.int64]:
     flat = rotations.reshape(len(rotations), 9)
     alike = flat @ flat.T
     np.fill_diagonal(alike, -np.inf)
-    return alike.argmax(axis=1)
+    nearest: NDArray[np.int64] = alike.argmax(axis=1)
+    return nearest

@@ -211,7 +211,8 @@ def _worth(
     noise = min(float(apart / max(np.median((strays**2).sum(axis=1)), 1e-300)), 1.0)
     lasting = hidden**2 * (1 - noise + LUCK / np.sqrt(n))
     shares = 1 / (noise + lasting * crowd)
-    return shares / shares.sum() / (noise / n + lasting / looks)
+    worth: Array = shares / shares.sum() / (noise / n + lasting / looks)
+    return worth
 
 
 def _solve(matrix: Array, right: Array) -> Array:
