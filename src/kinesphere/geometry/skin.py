@@ -155,7 +155,7 @@ def fit_through_skin(
         modes, crowd = modes[:, :0], crowds(turning.back)
     skin = _Skin(modes, RIGID * _root(turning.skin_seeing), RIGID * _root(turning.skin))
     x, inner = start, turning.place(start).mean(axis=0)
-    z = np.zeros(12 * modes.shape[1])
+    z, length = np.zeros(12 * modes.shape[1]), np.inf
     ones = np.concatenate([np.zeros(3), np.ones(len(z))])
     for _ in range(rounds):
         residual, columns, whitening = _equations(view, turning, x, inner, skin)
@@ -173,14 +173,14 @@ def fit_through_skin(
         doubt = doubt_of(shake, drawn + shake @ (expected - x), prior)
         follow = _solve(others, told[3:, :3])
         curve, heard = clear_of_shake(told[:3, :3] - told[:3, 3:] @ follow, shake, doubt)
+        if length < SETTLED:  # all of it is told at the centre itself
+            break
         score = gradient[:3] - follow.T @ gradient[3:] - drawn
         step = -_solve(prior + heard @ curve, prior @ (x - expected) + heard @ score)
         moved = -_solve(others, gradient[3:]) - follow @ step
         length = float(np.linalg.norm(step))
         short = min(1.0, 0.05 / max(length, 1e-12))
         x, inner, z = x + short * step, inner + short * moved[:3], moved[3:]
-        if length < SETTLED:
-            break
     # for what is told, skin may be as large as settings allow for
     others -= (1 - (RIGID / hidden) ** 2) * np.diag(ones)
     left = told[:3, :3] - told[:3, 3:] @ _solve(others, told[3:, :3])
