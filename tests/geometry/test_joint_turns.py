@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from kinesphere.geometry import joint_turns as joint_turns_module
 from kinesphere.geometry.centres import Turning
 from kinesphere.geometry.joint_turns import (
     crowds,
@@ -70,3 +71,16 @@ def test_a_pose_that_is_held_is_a_crowd():
 
 def test_the_nearest_pose_is_another_one():
     assert_allclose(nearest_poses(bent(np.array([0.0, 50.0, 2.0, 51.0]))), [2, 3, 0, 1])
+
+
+def test_a_pose_that_is_held_is_nearest_to_itself_seen_again():
+    near = nearest_poses(bent(np.array([10.0, 10.0, 10.0, 40.0])))
+    assert (near != np.arange(4)).all()
+    assert set(near[:3]) <= {0, 1, 2}
+
+
+def test_crowds_are_counted_the_same_in_blocks(rng, monkeypatch):
+    rotations = rotation_exp(0.2 * rng.normal(size=(50, 3)))
+    whole = crowds(rotations)
+    monkeypatch.setattr(joint_turns_module, "BLOCK", 7)
+    assert_allclose(crowds(rotations), whole, rtol=1e-12)

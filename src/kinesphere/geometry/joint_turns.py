@@ -2,6 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from kinesphere.geometry.centre_views import Turning
 from kinesphere.geometry.rotations import mean_rotation, rotation_log
@@ -12,6 +13,8 @@ ONE_AXIS = 0.05
 """Share of the widest rotation's variance below which the second-widest counts as none."""
 DENSE = np.deg2rad(5.0)
 """rad, poses nearer to each other than this are one pose held."""
+BLOCK = 1024
+"""Poses that are compared with all others at a time."""
 STILL = 1e-3
 """rad, rms rotation of a joint below which nothing can be said to go with it."""
 
@@ -65,15 +68,18 @@ def main_axis(turning: Turning) -> tuple[Array, float]:
 def crowds(rotations: Array) -> Array:
     """Return how many poses lie within some `DENSE` of each pose, itself among them, (n,)."""
     flat = rotations.reshape(len(rotations), 9)
-    angle2 = np.maximum(3.0 - flat @ flat.T, 0.0)  # nearly the square of the angle between them
-    crowd: Array = np.exp(-angle2 / (2 * DENSE**2)).sum(axis=1)
+    crowd = np.empty(len(flat))
+    for start in range(0, len(flat), BLOCK):
+        rows = slice(start, start + BLOCK)
+        angle2 = np.maximum(3.0 - flat[rows] @ flat.T, 0.0)  # nearly the angle's square
+        crowd[rows] = np.exp(-angle2 / (2 * DENSE**2)).sum(axis=1)
     return crowd
 
 
 def nearest_poses(rotations: Array) -> NDArray[np.int64]:
     """Return for each pose the index of the one most like it, (n,)."""
     flat = rotations.reshape(len(rotations), 9)
-    alike = flat @ flat.T
-    np.fill_diagonal(alike, -np.inf)
-    nearest: NDArray[np.int64] = alike.argmax(axis=1)
+    two = np.asarray(KDTree(flat).query(flat, k=2)[1])
+    itself = two[:, 0] == np.arange(len(flat))
+    nearest: NDArray[np.int64] = np.where(itself, two[:, 1], two[:, 0])
     return nearest
