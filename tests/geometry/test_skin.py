@@ -5,11 +5,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from kinesphere.geometry.centres import Turning, View, fit_centre
-from kinesphere.geometry.joint_turns import joint_modes, main_axis
+from kinesphere.geometry.joint_turns import joint_modes, main_axis, nearest_poses
 from kinesphere.geometry.pose_errors import pose_covariance
 from kinesphere.geometry.rigid import fit_rigid, fit_shape, into_frame
 from kinesphere.geometry.rotations import rotation_exp
-from kinesphere.geometry.skin import fit_through_skin, skin_noise
+from kinesphere.geometry.skin import _worth, fit_through_skin, skin_noise
 
 FRAMES = 160
 PARENT = np.array([[75, -17, -144], [71, -40, 112], [-93, 22, -56], [-92, 16, 35], [-82, 53, -13]])
@@ -198,3 +198,31 @@ def test_skin_noise_is_what_follows_the_joint_and_no_more(rng):
     grown = np.sqrt(15 / 9)
     assert noise[0] == pytest.approx(0.004 * grown, rel=0.1)
     assert (noise[1:] < 3e-4 * grown).all()
+
+
+def worth_of(strays, crowd, hidden=3.0, looks=20.0):
+    t = np.linspace(0, 40, len(strays))
+    near = nearest_poses(rotation_exp(np.stack([np.sin(t), np.cos(1.3 * t), 0 * t], axis=1)))
+    return _worth(strays, near, crowd, looks, hidden)
+
+
+def test_noise_counts_by_frames_and_what_lasts_by_poses(rng):
+    t = np.linspace(0, 40, 600)
+    lasting = np.stack([np.sin(t), np.cos(1.3 * t), np.sin(t) * np.cos(1.3 * t)], axis=1)
+    noise, even = rng.normal(size=(600, 3)), np.ones(600)
+    lasts, averages, both = (
+        worth_of(strays, even).sum() for strays in (lasting, noise, lasting + 0.5 * noise)
+    )
+    assert lasts == pytest.approx(20 / 9, rel=0.2)
+    assert 5 * lasts < averages <= 600
+    assert lasts < both < averages
+
+
+def test_poses_that_are_held_share_what_lasts_but_not_noise(rng):
+    t = np.linspace(0, 40, 600)
+    lasting = np.stack([np.sin(t), np.cos(1.3 * t), np.sin(t) * np.cos(1.3 * t)], axis=1)
+    crowd = np.where(np.arange(600) < 300, 30.0, 1.0)
+    held = worth_of(lasting, crowd)
+    assert held[0] == pytest.approx(held[-1] / 30, rel=0.05)
+    noisy = worth_of(rng.normal(size=(600, 3)), crowd, hidden=1.0)
+    assert noisy[0] > noisy[-1] / 10
