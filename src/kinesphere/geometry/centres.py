@@ -9,8 +9,9 @@ from kinesphere.geometry.algebraic_centres import sphere_centre
 from kinesphere.geometry.centre_terms import find_information, find_terms
 from kinesphere.geometry.centre_views import Turning as Turning
 from kinesphere.geometry.centre_views import View as View
+from kinesphere.geometry.joint_turns import main_axis
 from kinesphere.geometry.medians import column_medians
-from kinesphere.geometry.skin import FEW, fit_through_skin, hinge_axis
+from kinesphere.geometry.skin import FEW, fit_through_skin
 from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
@@ -19,9 +20,6 @@ CELL = np.deg2rad(10.0)
 """rad, poses nearer to each other than this count as one: soft tissue errs alike in both."""
 ALIGNED = 0.8
 """Least cosine between the axis of a hinge and the direction its motion knows least."""
-TURNED = 0.5
-"""Least cosine between the axis of a hinge and the one axis its limb turned about, which the motion
-tells better than the model does: knees are up to 43° from the line across their thigh's markers."""
 FIRM = 16.0
 """Information from the motion, in the expectation's units, above which a hinge is left to it."""
 FAR = 10.0
@@ -90,10 +88,10 @@ def fit_centre(
         How many times larger errors are that the fit absorbs (skin that moves with the pose) than
         those it leaves as residuals.
     hinge : (3,), optional
-        Direction of the axis of a joint known to have only one. Where the motion turns about no
-        other, or knows the centre least along it, too, the expectation holds ``tighter`` times
-        tighter there: what residuals tell about that direction is how they were spoilt. The
-        uncertainty along it is that of the expectation all the same.
+        Direction of the axis of a joint known to have only one. The expectation holds ``tighter``
+        times tighter along it. Where both limbs have a pose and skin is known, that is along the
+        axis that the motion shows, however firmly it is told; else where the motion knows the
+        centre least along it, too. The uncertainty is that of the expectation all the same.
     tighter
     rounds
         Most steps of the descent.
@@ -103,14 +101,19 @@ def fit_centre(
     if np.linalg.norm(algebraic - expected) < FAR * spread:
         x = min((expected, algebraic), key=lambda start: _cost(view, start))
     plain = prior = np.eye(3) / spread**2
-    x, information = _fit(view, x, expected, 0.01 * prior, hidden, rounds)
-    along = None if hinge is None else _open_axis(view, information, spread, hinge, hidden)
-    if along is not None:
-        prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
-    x, information = _fit(view, x, expected, prior, hidden, rounds)
-    if along is not None:  # what was not asked has told nothing
-        across = np.eye(3) - np.outer(along, along)
-        information = across @ information @ across
+    if _has_skin(view):
+        if hinge is not None:
+            prior = prior + _single(view, expected, tighter) / spread**2
+        x, information = _fit(view, x, expected, prior, hidden, rounds)
+    else:
+        x, information = _fit(view, x, expected, 0.01 * prior, hidden, rounds)
+        along = None if hinge is None else _open_axis(information, spread, hinge)
+        if along is not None:
+            prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
+        x, information = _fit(view, x, expected, prior, hidden, rounds)
+        if along is not None:  # what was not asked has told nothing
+            across = np.eye(3) - np.outer(along, along)
+            information = across @ information @ across
     return CentreFit(
         centre=x,
         noise=_robust_noise(view, x),
@@ -121,13 +124,30 @@ def fit_centre(
     )
 
 
-def _open_axis(
-    view: View, information: Array, spread: float, hinge: Array, hidden: float
-) -> Array | None:
+def _has_skin(view: View) -> bool:
+    """Return whether it is known what goes with the joint, and in poses enough to reckon with."""
+    turning = view.turning
+    return turning is not None and turning.skin is not None and bool(turning.known.sum() >= FEW)
+
+
+def _single(view: View, expected: Array, tighter: float) -> Array:
+    """Return how much tighter a hinge is expected, (3, 3), in the expectation's own units.
+
+    Along the axis it turns about. As far as single rotations stray from that axis, or it points
+    along the limb, what is unsure across it is unsure along it.
+    """
+    assert view.turning is not None
+    axis, strays = main_axis(view.turning)
+    points, seen, *_ = view.sightings
+    arm = (points[seen] - expected).sum(axis=0) if seen.any() else np.zeros(3)
+    pointing = float((axis @ arm) ** 2 / max(arm @ arm, 1e-300))
+    times = 1 / (1 / tighter**2 + strays + pointing)
+    more: Array = max(times - 1, 0.0) * np.outer(axis, axis)
+    return more
+
+
+def _open_axis(information: Array, spread: float, hinge: Array) -> Array | None:
     """Return the direction in which a hinge's centre is left to its expectation, (3,)."""
-    turned = hinge_axis(view, hidden)
-    if turned is not None and abs(turned @ hinge) > TURNED:
-        return turned
     values, vectors = np.linalg.eigh(information)
     aligned = abs(vectors[:, 0] @ hinge) > ALIGNED
     return vectors[:, 0] if aligned and values[0] * spread**2 < FIRM else None
@@ -138,7 +158,7 @@ def _fit(
 ) -> tuple[Array, Array]:
     """Return the centre, and what the motion tells about it, (3, 3) 1/m²."""
     turning, n_poses = view.turning, count_poses(view, expected)
-    if turning is not None and turning.skin is not None and turning.known.sum() >= FEW:
+    if _has_skin(view):
         fit = fit_through_skin(view, x, expected, prior, n_poses, hidden=hidden, rounds=rounds)
         return fit.centre, fit.information
     # distances and orientation are two readings of the same sightings

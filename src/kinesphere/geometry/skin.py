@@ -13,8 +13,16 @@ from numpy.typing import NDArray
 
 from kinesphere.geometry.centre_terms import soft_weights
 from kinesphere.geometry.centre_views import Turning, View
+from kinesphere.geometry.joint_turns import (
+    crowds,
+    has_one_axis,
+    joint_modes,
+    joint_turns,
+    nearest_poses,
+)
 from kinesphere.geometry.pose_errors import point_covariance
-from kinesphere.geometry.rotations import hat, mean_rotation, rotation_log
+from kinesphere.geometry.rotations import hat
+from kinesphere.geometry.shake import clear_of_shake, doubt_of, find_shake
 from kinesphere.geometry.vectors import is_seen, lengths
 
 Array = NDArray[np.float64]
@@ -26,47 +34,14 @@ NONE = 1e-12
 RIGID = 1.5
 """How many times more of the skin's movement is rigid, and shows in no residual, than is not: on
 synthetic skin the errors of hips are least from 1 to 1.5."""
-ONE_AXIS = 0.05
-"""Share of the widest rotation's variance below which the second-widest counts as none."""
-DENSE = np.deg2rad(5.0)
-"""rad, poses of a hinge nearer to each other than this share their weight."""
 FEW = 10
 """Poses below which nothing is said about skin."""
-STILL = 1e-3
-"""rad, rms rotation of a joint below which nothing can be said to go with it."""
+LUCK = 3.0
+"""Standard errors of the share of residuals that lasts by which it may be larger than it looks."""
 ROUNDING = 1e-13
 """Share of each unknown's own weight that keeps equations solvable: what rounding leaves."""
 SETTLED = 1e-6
 """m, step that ends the fit."""
-
-
-def joint_turns(rotations: Array) -> Array:
-    """Return the joint's rotation away from its mean, rad; (n, 3, 3) → (n, 3)."""
-    turns = rotation_log(mean_rotation(rotations).T @ rotations)
-    centred: Array = turns - turns.mean(axis=0)
-    return centred
-
-
-def joint_modes(rotations: Array) -> Array:
-    """Return the joint's rotation away from its mean, over its rms; (n, 3, 3) → (n, 3)."""
-    turns = joint_turns(rotations)
-    modes: Array = turns / max(float(np.sqrt((turns**2).sum(axis=1).mean() / 3)), STILL)
-    return modes
-
-
-def has_one_axis(turns: Array, blur: float) -> bool:
-    """Return whether a joint turns about one axis alone, from its turns (n, 3) rad.
-
-    Parameters
-    ----------
-    turns
-        As `joint_turns` returns them.
-    blur
-        rad², variance of the rotation that noise and skin can feign: what turns farther than that
-        about a second axis is a second axis, however small.
-    """
-    variances = np.linalg.eigvalsh(turns.T @ turns / len(turns))
-    return bool(variances[1] < min(ONE_AXIS * variances[2], blur))
 
 
 def feigned(view: View, hidden: float) -> float:
@@ -78,22 +53,6 @@ def feigned(view: View, hidden: float) -> float:
     skin, noise = (turning.skin, turning.skin_seeing), (turning.pose, view.pose)
     most = [float(np.linalg.eigvalsh(c[:3, :3])[-1]) for c in (*skin, *noise)]
     return hidden**2 * (most[0] + most[1]) + most[2] + most[3]
-
-
-def hinge_axis(view: View, hidden: float) -> Array | None:
-    """Return the one axis a joint turns about, (3,); None if it has more.
-
-    In the frame of the seeing limb. Fewer than `FEW` poses tell nothing.
-    """
-    turning = view.turning
-    if turning is None or turning.skin is None or turning.known.sum() < FEW:
-        return None
-    r = turning.rotations[turning.known]
-    turns = joint_turns(r)
-    if not has_one_axis(turns, feigned(view, hidden)):
-        return None
-    axis: Array = mean_rotation(r) @ np.linalg.eigh(turns.T @ turns)[1][:, 2]
-    return axis
 
 
 def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
@@ -120,14 +79,6 @@ def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
     # the fit itself takes up six of the coordinates: what is left looks smaller than it is
     noise *= np.sqrt(3 * n / max(3 * n - 6, 1))
     return np.where(noise > LEAST, noise, NONE)
-
-
-def pose_weights(rotations: Array) -> Array:
-    """Return weights that make every pose count alike, however long it was held, (n,) of mean 1."""
-    flat = rotations.reshape(len(rotations), 9)
-    angle2 = np.maximum(3.0 - flat @ flat.T, 0.0)  # nearly the square of the angle between them
-    weights = 1 / np.exp(-angle2 / (2 * DENSE**2)).sum(axis=1)
-    return np.asarray(weights / weights.mean())
 
 
 class SkinFit(NamedTuple):
@@ -167,12 +118,14 @@ def fit_through_skin(
     each pose would have if its markers moved `RIGID` times as far as `skin_noise` says. Residuals
     have a soft-L1 loss. The information reckons with ``hidden`` instead of `RIGID`.
 
-    Errors that are not linear in the rotation stay, and no number of poses averages them out: as
-    everywhere, a look is worth 1/``hidden``² of what its residual says.
+    Errors that are not linear in the rotation stay. What of the residuals is alike in poses alike
+    no number of frames averages out: of that, a look is worth 1/``hidden``².
 
-    A hinge tells nothing apart that is linear in its one angle: there skin is not modelled, and
-    poses count alike however long they were held, so that skin errs alike in trials that dwell
-    elsewhere.
+    A hinge tells nothing apart that is linear in its one angle: there skin is not modelled, and as
+    far as errors last, poses count alike however long they were held, so that skin errs alike in
+    trials that dwell elsewhere.
+
+    What noise in the orientations feigns is taken off: see `kinesphere.geometry.shake`.
 
     Parameters
     ----------
@@ -196,38 +149,70 @@ def fit_through_skin(
     assert turning.skin is not None
     assert turning.skin_seeing is not None
     rotations = turning.rotations[turning.known]
-    modes, looks = joint_modes(rotations), looks / hidden**2
-    share = np.full(len(modes), 1 / len(modes))
+    modes, near = joint_modes(rotations), nearest_poses(turning.back)
+    crowd = np.ones(len(modes))
     if has_one_axis(joint_turns(rotations), feigned(view, hidden)):
-        modes, share = modes[:, :0], share * pose_weights(turning.back)
+        modes, crowd = modes[:, :0], crowds(turning.back)
     skin = _Skin(modes, RIGID * _root(turning.skin_seeing), RIGID * _root(turning.skin))
     x, inner = start, turning.place(start).mean(axis=0)
-    z = np.zeros(12 * modes.shape[1])
-    ones = np.concatenate([np.zeros(6), np.ones(len(z))])
+    z, length = np.zeros(12 * modes.shape[1]), np.inf
+    ones = np.concatenate([np.zeros(3), np.ones(len(z))])
     for _ in range(rounds):
-        residual, columns = _equations(view, turning, x, inner, skin)
-        scale, soft = soft_weights(lengths(residual + columns[:, :, 6:] @ z)[:, None], None, 3)
-        w = share * soft[:, 0] * (looks / scale[0] ** 2)
+        residual, columns, whitening = _equations(view, turning, x, inner, skin)
+        strays = residual + columns[:, :, 6:] @ z
+        scale, soft = soft_weights(lengths(strays)[:, None], None, 3)
+        w = soft[:, 0] / scale[0] ** 2 * _worth(strays, near, crowd, looks, hidden)
         flat = columns.reshape(-1, columns.shape[2])
         weighed = (columns * w[:, None, None]).reshape(flat.shape)
-        told = weighed.T @ flat
-        whole = told + np.diag(ones)
-        whole[:3, :3] += prior
-        whole[3:6, 3:6] += 1e-9 * np.trace(told[3:6, 3:6]) * np.eye(3)
-        gradient = weighed.T @ residual.ravel()
-        gradient[:3] += prior @ (x - expected)
-        step = -_solve(whole, gradient)
-        length = float(np.linalg.norm(step[:3]))
-        short = min(1.0, 0.05 / max(length, 1e-12))
-        x, inner, z = x + short * step[:3], inner + short * step[3:6], step[6:]
-        if length < SETTLED:
+        told, gradient = weighed.T @ flat, weighed.T @ residual.ravel()
+        others = told[3:, 3:] + np.diag(ones)
+        others[:3, :3] += 1e-9 * np.trace(told[3:6, 3:6]) * np.eye(3)
+        # poses say how large their noise is, unless what is left is less
+        size = min(1.0, float(np.average((strays**2).sum(axis=1), weights=w)) / 3)
+        shake, drawn = find_shake(view, turning, x, whitening, w * size)
+        doubt = doubt_of(shake, drawn + shake @ (expected - x), prior)
+        follow = _solve(others, told[3:, :3])
+        curve, heard = clear_of_shake(told[:3, :3] - told[:3, 3:] @ follow, shake, doubt)
+        if length < SETTLED:  # all of it is told at the centre itself
             break
+        score = gradient[:3] - follow.T @ gradient[3:] - drawn
+        step = -_solve(prior + heard @ curve, prior @ (x - expected) + heard @ score)
+        moved = -_solve(others, gradient[3:]) - follow @ step
+        length = float(np.linalg.norm(step))
+        short = min(1.0, 0.05 / max(length, 1e-12))
+        x, inner, z = x + short * step, inner + short * moved[:3], moved[3:]
     # for what is told, skin may be as large as settings allow for
-    rest = whole[3:, 3:] - (1 - (RIGID / hidden) ** 2) * np.diag(ones[3:])
-    left = told[:3, :3] - whole[:3, 3:] @ _solve(rest, whole[3:, :3])
-    shaky = _shaking(view, turning, float(scale[0]), looks)
-    whole_told = told[:3, :3] if modes.shape[1] else left
-    return SkinFit(x, _less_shaky(left, whole_told, shaky))
+    others -= (1 - (RIGID / hidden) ** 2) * np.diag(ones)
+    left = told[:3, :3] - told[:3, 3:] @ _solve(others, told[3:, :3])
+    curve, heard = clear_of_shake(left, shake, doubt)
+    return SkinFit(x, heard @ curve)
+
+
+def _worth(
+    strays: Array, near: NDArray[np.int64], crowd: Array, looks: float, hidden: float
+) -> Array:
+    """Return what each pose is worth, in looks at the centre, (n,).
+
+    Of the residuals' variance the share that differs between poses most alike is noise, which
+    averages out; the rest lasts: it is alike in poses alike, as is ``hidden``² times as much that
+    no residual shows. Frames of one pose share what lasts.
+
+    Parameters
+    ----------
+    strays : (n, 3)
+        Residuals.
+    near, crowd : (n,)
+        As `nearest_poses` and `crowds` return them.
+    looks
+        How many independent poses there are.
+    """
+    n = len(strays)
+    apart = np.median(((strays - strays[near]) ** 2).sum(axis=1)) / 2
+    noise = min(float(apart / max(np.median((strays**2).sum(axis=1)), 1e-300)), 1.0)
+    lasting = hidden**2 * (1 - noise + LUCK / np.sqrt(n))
+    shares = 1 / (noise + lasting * crowd)
+    worth: Array = shares / shares.sum() / (noise / n + lasting / looks)
+    return worth
 
 
 def _solve(matrix: Array, right: Array) -> Array:
@@ -247,7 +232,7 @@ def _root(covariance: Array) -> Array:
 
 def _equations(
     view: View, turning: Turning, x: Array, inner: Array, skin: _Skin
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array, Array]:
     """Return residuals (n, 3) over their noise, and their derivatives (n, 3, 6 + 12 k).
 
     By the centre in either limb, and by the maps from the joint's rotation to their poses' errors.
@@ -270,22 +255,4 @@ def _equations(
         columns[:, :, 6:middle] = moved.reshape(n, 3, -1)
         moved = -(w @ own)[None, :, None] * skin.modes[:, None, :, None]
         columns[:, :, middle:] = moved.reshape(n, 3, -1)
-    return (turning.place(x) - inner) @ w.T, columns
-
-
-def _shaking(view: View, turning: Turning, scale: float, looks: float) -> float:
-    """Return the information, 1/m², that orientations seem to give because they shake."""
-    shaky = (np.trace(turning.pose[:3, :3]) + np.trace(view.pose[:3, :3])) * 2 / 3
-    return float(shaky * min(1.0, scale**2) * looks / (scale * turning.noise) ** 2)
-
-
-def _less_shaky(left: Array, whole: Array, shaky: float) -> Array:
-    """Return what is left of information less the share of the whole that is orientations' shake.
-
-    (3, 3) 1/m²; in directions about which the limbs hardly turn against each other that is all.
-    """
-    values, vectors = np.linalg.eigh(whole)
-    share = np.sqrt(np.maximum(1.0 - shaky / np.maximum(values, 1e-300), 0.0))
-    root = (vectors * share) @ vectors.T
-    cleared: Array = root @ left @ root
-    return cleared
+    return (turning.place(x) - inner) @ w.T, columns, w

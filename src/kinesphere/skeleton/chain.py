@@ -7,6 +7,7 @@ import numpy as np
 from kinesphere.data import Array, JointModel, TopologicalModel
 from kinesphere.errors import DegenerateMotion
 from kinesphere.geometry.centres import CentreFit, Turning, View, fit_centre
+from kinesphere.geometry.joint_turns import joint_modes
 from kinesphere.geometry.pose_errors import point_covariance, pose_covariance
 from kinesphere.geometry.rigid import (
     RigidFit,
@@ -14,7 +15,7 @@ from kinesphere.geometry.rigid import (
     out_of_frame,
 )
 from kinesphere.geometry.rotations import mean_rotation
-from kinesphere.geometry.skin import joint_modes, skin_noise
+from kinesphere.geometry.skin import skin_noise
 from kinesphere.skeleton.body import NOISE, Body, measure_shape, robust_rms
 from kinesphere.skeleton.landmarks import expected_centre
 from kinesphere.skeleton.limb_axes import find_axes
