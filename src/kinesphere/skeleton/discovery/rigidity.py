@@ -107,9 +107,7 @@ def trimmed_share(seconds: float, ghost_s: float) -> float:
     return min(MOST_TRIMMED, ghost_s / seconds) if seconds > 0 else MOST_TRIMMED
 
 
-def measure_rigidity(
-    points: Array, unit: float = 1.0, *, trim: float = MOST_TRIMMED
-) -> Rigidity:
+def measure_rigidity(points: Array, unit: float = 1.0, *, trim: float = MOST_TRIMMED) -> Rigidity:
     """Return how steady all distances are.
 
     Parameters
