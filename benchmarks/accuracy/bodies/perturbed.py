@@ -166,8 +166,8 @@ def perturbed_section(rows: Sequence[dict[str, Any]]) -> str:
         f"{1e3 * NOISE:g} mm of noise in each direction ({DRAWS} draws), with its markers in "
         "another order and with its numbers laid out in another order in memory; the beginnings "
         f"of synthetic animals and hands ({', '.join(f'{s:g}' for s in SHORT_S)} s), where limbs "
-        f"count as one while the joint between them turns less than {MOVES_DEG:g}°. Another order of "
-        f"markers or of memory gives the same in {len(laws) - len(broken)} of {len(laws)}"
+        f"count as one while the joint between them turns less than {MOVES_DEG:g}°. Another order "
+        f"of markers or of memory gives the same in {len(laws) - len(broken)} of {len(laws)}"
         f"{'; not in ' + '; '.join(broken) if broken else ''}.\n",
         "| recording | looks | whole | ARI, median | worst | in | wrong joints, median | most "
         "| all wrong names (confidence) |",
