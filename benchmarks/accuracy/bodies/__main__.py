@@ -17,22 +17,46 @@ from benchmarks.accuracy.bodies.functional import functional_rows
 from benchmarks.accuracy.bodies.hiding import hiding_rows
 from benchmarks.accuracy.bodies.page import bars, page
 from benchmarks.accuracy.bodies.partitions import Row, rows
+from benchmarks.accuracy.bodies.perturbed import perturbed_rows
 from kinesphere import __version__
 
 RESULTS = ROOT / "benchmarks" / "results" / "skeleton.json"
+ACTORS = 10
+CREATURES = 6
+"""Animals, hands, players and pairs of people."""
+
+
+def _partitions() -> list[dict[str, Any]]:
+    found = [_told(row) for row in rows(real_cases())]
+    for seed in range(CREATURES):
+        found += [_told(row) for row in rows(creature_cases(seed))]
+    for spoilt in (False, True):
+        for seed in range(ACTORS):
+            case = actor_case(seed, spoilt=spoilt)
+            found += [_told(row) for row in rows([case], centres=True)]
+    return [asdict(row) for row in found]
+
+
+def _changes() -> list[dict[str, Any]]:
+    quadruped, hand, _, people = creature_cases(0)
+    lawful = [actor_case(0, spoilt=True), quadruped, hand, people]
+    cmu = [case for case in real_cases() if case.name.startswith("cmu41")]
+    return [asdict(row) for row in change_rows(lawful, cmu)]
+
+
 SECTIONS: dict[str, Callable[[], Any]] = {
+    "partitions": _partitions,
+    "changes": _changes,
+    "perturbed": lambda: [asdict(row) for row in perturbed_rows()],
     "arm": arm_figures,
     "functional": lambda: [asdict(row) for row in functional_rows()],
     "hiding": lambda: [asdict(row) for row in hiding_rows()],
 }
-CREATURES = 6
-"""Animals, hands, players and pairs of people."""
 
 
 def main() -> int:
     """Run every section; write ``skeleton.json``, ``skeleton.md`` and the plot."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--actors", type=int, default=10)
     parser.add_argument(
         "--without-peer", action="store_true", help="write the page without the peer's columns"
     )
@@ -59,33 +83,17 @@ def main() -> int:
         found |= {"version": __version__, **{name: SECTIONS[name]() for name in arguments.only}}
         if "functional" in arguments.only:
             found["peer"] = _peer()
-        if absent := {"partitions", "changes", *SECTIONS, "cost"} - found.keys():
+        if absent := {*SECTIONS, "cost"} - found.keys():
             print(
                 f"{RESULTS} has no {', '.join(sorted(absent))} to keep: run without --only",
                 file=sys.stderr,
             )
             return 2
         return _ended(found, None)
-    partitions: list[Row] = []
-    for row in rows(real_cases()):
-        partitions.append(_told(row))
-    creatures = [creature_cases(seed) for seed in range(CREATURES)]
-    for cases in creatures:
-        partitions += [_told(row) for row in rows(cases)]
-    for spoilt in (False, True):
-        for seed in range(arguments.actors):
-            case = actor_case(seed, spoilt=spoilt)
-            partitions += [_told(row) for row in rows([case], centres=True)]
-    quadruped, hand, _, people = creatures[0]
-    lawful = [actor_case(0, spoilt=True), quadruped, hand, people]
-    cmu = [case for case in real_cases() if case.name.startswith("cmu41")]
-    changes = [asdict(row) for row in change_rows(lawful, cmu)]
     costs = cost_rows()
     found = {
         "version": __version__,
         "peer": _peer(),
-        "partitions": [asdict(row) for row in partitions],
-        "changes": changes,
         **{name: measure() for name, measure in SECTIONS.items()},
         "cost": [asdict(row) for row in costs],
     }

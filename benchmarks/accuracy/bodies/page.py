@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.accuracy.bodies.changes import changes_section
+from benchmarks.accuracy.bodies.perturbed import perturbed_section
 
 SIZES = [2, 3, 4]
 """Markers of the unlabelled arm's bodies."""
@@ -121,6 +122,7 @@ def page(found: dict[str, Any]) -> str:
             _scoreboard(bars(found)),
             _partitions(found["partitions"]),
             changes_section(found["changes"]),
+            perturbed_section(found["perturbed"]),
             _functional(found["functional"], found["peer"]),
             _arm(found["arm"]),
             _hiding(found["hiding"]),

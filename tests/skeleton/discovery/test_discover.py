@@ -151,6 +151,47 @@ def test_where_all_counts_as_reflections_the_setting_is_named(recorded):
         discover(replace(recorded, markers=seen_at_times))
 
 
+@pytest.mark.parametrize("laid_out", ["F", "markers first", "not aligned"])
+def test_how_numbers_lie_in_memory_does_not_matter(found, recorded, laid_out):
+    """Past the copy that a recording makes, too: every finding to the last digit."""
+    markers = recorded.markers
+    if laid_out == "F":
+        other = np.asfortranarray(markers)
+    elif laid_out == "markers first":
+        other = np.ascontiguousarray(markers.swapaxes(0, 1)).swapaxes(0, 1)
+    else:
+        bare = np.empty(markers.nbytes + 8, dtype=np.uint8)
+        other = bare[8:].view(np.float64).reshape(markers.shape)
+        other[:] = markers
+    again = replace(recorded)
+    object.__setattr__(again, "markers", other)
+    told = discover(again)
+    assert as_told(told) == as_told(found)
+    assert told.step.findings == found.step.findings
+
+
+def test_a_marker_over_a_joint_is_a_knee_s_half_width_from_its_centre_and_as_much_again(
+    actor, recorded, rng
+):
+    """6 cm on a person: a knee is 9 to 12 cm wide; in proportion on dolls."""
+    names = list(actor.skeleton.limb_names)
+    knee = next(j for j, joint in enumerate(actor.skeleton.joints) if joint.name == "left_knee")
+    joint = actor.skeleton.joints[knee]
+    axis = actor.motion.rotations[:, names.index(joint.parent)] @ joint.axes[0]
+    over = actor.joint_centres[:, knee] + 0.05 * axis + rng.normal(scale=0.001, size=axis.shape)
+    markers = np.concatenate([recorded.markers, over[:, None]], axis=1)
+    spreads = []
+    for size in (1.0, 0.1, 0.05):
+        labels = (*recorded.labels, "knee")
+        model = discover(replace(recorded, markers=size * markers, labels=labels)).model
+        (landmark,) = (mark for joint in model.joints for mark in joint.landmarks)
+        assert landmark.weights == {"knee": 1.0}
+        spreads.append(landmark.spread)
+    assert 0.045 < spreads[0] < 0.075
+    assert spreads[1] < 0.75 * spreads[0]
+    assert spreads[2] == pytest.approx(spreads[1] / 2)
+
+
 def test_the_same_input_gives_the_same_output(found, recorded):
     again = discover(recorded)
     assert again.model == found.model or as_told(again) == as_told(found)

@@ -1,5 +1,7 @@
 """A marker near a joint goes where noise says, and stays where only skin could say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -44,6 +46,22 @@ def test_where_skin_moves_markers_nothing_is_exchanged(hinged, rng):
     skin[:, JOINT:] += 0.004 * slow / slow.std(axis=0)
     wrong = [np.arange(JOINT + 1), np.arange(JOINT + 1, 9)]
     assert told(skin, wrong) == [body.tolist() for body in wrong]
+
+
+def test_noise_on_top_of_skin_moves_no_marker(hinged, rng):
+    """Two bodies are rigid to the noise, three wobble as skin does: the recording is a person's."""
+    n = len(hinged)
+    slow = np.cumsum(rng.normal(size=(n, 12, 3)), axis=0)
+    shape = rng.normal(scale=0.06, size=(12, 3)) + np.array([0.5, 0.0, 0.0])
+    soft = shape + 0.004 * slow / slow.std(axis=0) + rng.normal(scale=NOISE, size=(n, 12, 3))
+    points = np.concatenate([hinged, soft], axis=1)
+    wobbling = [np.arange(9, 13), np.arange(13, 17), np.arange(17, 21)]
+    wrong = [np.arange(JOINT + 1), np.arange(JOINT + 1, 9), *wobbling]
+    noise = replace(measure_rigidity(points), noise=measure_rigidity(hinged).noise)
+    kept = [body.tolist() for body in to_the_steadiest(noise, wrong)]
+    assert kept == [body.tolist() for body in wrong]
+    # the same two bodies by themselves: noise alone decides
+    assert told(hinged, wrong[:2]) == [list(range(JOINT)), list(range(JOINT, 9))]
 
 
 def test_a_body_keeps_the_markers_of_its_pose(hinged):

@@ -137,3 +137,9 @@ def test_what_is_missing_costs_more_than_what_is_held_and_less_than_what_is_left
         assert held < less < left_over
     assert read_as(8, 12) == 2 * held  # what hangs from a thing that is held is held
     assert read_as(8, 0) == held + left_over
+
+
+def test_a_body_left_over_costs_what_one_person_in_twenty_has(read_as):
+    """−2 log of its share, as every squared deviation is: a person with five such is nobody."""
+    assert read_as(0) == pytest.approx(2 * np.log(20), rel=0.01)
+    assert read_as(0, 0) == pytest.approx(4 * np.log(20), rel=0.01)

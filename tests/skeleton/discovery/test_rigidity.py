@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 
 from kinesphere.errors import BadRecording, DegenerateMotion
-from kinesphere.skeleton.discovery.rigidity import longest_runs, measure_rigidity, worth_grouping
+from kinesphere.skeleton.discovery.rigidity import (
+    MOST_TRIMMED,
+    longest_runs,
+    measure_rigidity,
+    trimmed_share,
+    worth_grouping,
+)
 
 RATE = 50.0
 
@@ -47,6 +53,31 @@ def test_longest_runs_count_the_ends():
     seen = np.array([[1, 0, 1], [1, 0, 0], [0, 0, 1], [1, 0, 1]], dtype=bool)
     assert longest_runs(seen).tolist() == [2, 0, 2]
     assert longest_runs(seen, 1).tolist() == [4, 0, 4]
+
+
+def test_what_a_reflection_lives_is_trimmed_and_no_more():
+    assert trimmed_share(50.0, 0.5) == pytest.approx(0.01)
+    assert trimmed_share(480.0, 0.5) == pytest.approx(0.5 / 480)
+    assert trimmed_share(3.0, 0.5) == MOST_TRIMMED
+    assert trimmed_share(10.0, 0.5) == trimmed_share(10.0, 40.0) == MOST_TRIMMED
+    assert trimmed_share(10.0, 0.0) == 0.0
+
+
+def test_a_joint_that_bends_for_a_few_seconds_of_a_minute_shows(rng):
+    """Two markers, 0.2 m apart, come 50 mm nearer for 4 s; a reflection takes 0.4 s of a third."""
+    n = int(60 * RATE)
+    points = rng.normal(scale=0.001, size=(n, 4, 3))
+    points += np.array([[0.0, 0, 0], [0.2, 0, 0], [0.1, 0.1, 0], [0.1, 0, 0.15]])
+    bend = slice(1000, 1000 + int(4 * RATE))
+    points[bend, 1, 0] -= 0.05 * np.sin(np.linspace(0, np.pi, int(4 * RATE)))
+    points[2000:2020, 2, 1] += 0.3
+    points += np.linspace(0.0, 2.0, n)[:, None, None]  # they walk as they do it
+    hidden = measure_rigidity(points, trim=0.05).wander
+    shown = measure_rigidity(points, trim=trimmed_share(60.0, 0.5)).wander
+    steady = shown[0, 3]
+    assert hidden[0, 1] < 3 * steady
+    assert shown[0, 1] > 5 * steady
+    assert shown[0, 2] < 1.5 * steady  # the reflection does not
 
 
 def test_noise_is_what_steady_distances_wander_by(rng, moving_bodies):

@@ -17,7 +17,7 @@ from kinesphere.skeleton.discovery.forest import Forest, rerooted
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
 from kinesphere.skeleton.discovery.names import settled, shaken
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
-from kinesphere.skeleton.discovery.rigidity import worth_grouping
+from kinesphere.skeleton.discovery.rigidity import trimmed_share, worth_grouping
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.discovery.size import PERSON, from_the_middle, subject_size
 from kinesphere.skeleton.discovery.spikes import without_spikes
@@ -83,7 +83,8 @@ def discover(
     points = np.ascontiguousarray(markers[spread_frames(markers, settings.sample_frames)])
     limits = skeleton or SkeletonSettings()
     costs = JointCosts(points, unit)
-    partition = find_partition(points, settings, limits, costs)
+    trim = trimmed_share(recording.n_frames / recording.rate, settings.ghost_s)
+    partition = find_partition(points, settings, limits, costs, trim=trim)
     labels = tuple(recording.labels[c] for c in columns)
     _check_tree(partition, labels, settings.tree)
     partition, tree, names = named_tree(partition, costs, settings)

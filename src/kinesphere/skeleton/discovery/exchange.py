@@ -7,7 +7,7 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.skeleton.discovery.joint_costs import Members
 from kinesphere.skeleton.discovery.rigidity import Rigidity
-from kinesphere.skeleton.discovery.steadiness import OWN_POSE, steadiness
+from kinesphere.skeleton.discovery.steadiness import OWN_POSE, steadiness, usual_wander
 
 SIGNIFICANT = 3.0
 """Standard errors by which two deviations must differ to count as different."""
@@ -18,11 +18,14 @@ def to_the_steadiest(rigidity: Rigidity, bodies: Sequence[Members]) -> list[Memb
 
     Where nothing but noise moves a body's markers against each other, noise tells which of two
     bodies a marker rides on, though nearness did not: it is as steady there as the body's own
-    markers are, and not at home. Where skin moves them that says nothing, so a body counts only
-    if it is no less steady than the recording's steadiest distances.
+    markers are, and not at home. Where skin moves them that says nothing: nothing is moved unless
+    distances within bodies are, by and large, as steady as the recording's steadiest ones, and a
+    body counts only if it is. Noise on top of skin makes single bodies look rigid to it.
     """
     wander, kept = rigidity.wander, [members.copy() for members in bodies]
     same = 1 + SIGNIFICANT / np.sqrt(2 * len(rigidity.points))
+    if usual_wander(wander, kept) >= same * rigidity.noise:
+        return kept
     for _ in range(len(kept)):
         steady = steadiness(wander, kept)
         inner = np.array([_rms(steady[members, b]) for b, members in enumerate(kept)])

@@ -13,7 +13,7 @@ from kinesphere.skeleton.discovery.forest import Forest, contracted
 from kinesphere.skeleton.discovery.joint_costs import JointCosts, Members
 from kinesphere.skeleton.discovery.joint_tree import find_forest
 from kinesphere.skeleton.discovery.loners import resettle
-from kinesphere.skeleton.discovery.rigidity import Rigidity, measure_rigidity
+from kinesphere.skeleton.discovery.rigidity import MOST_TRIMMED, Rigidity, measure_rigidity
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.discovery.steadiness import usual_wander
 from kinesphere.skeleton.settings import SkeletonSettings
@@ -58,6 +58,8 @@ def find_partition(
     settings: DiscoverySettings,
     limits: SkeletonSettings,
     costs: JointCosts,
+    *,
+    trim: float = MOST_TRIMMED,
 ) -> Partition:
     """Group markers into bodies and join the bodies.
 
@@ -70,13 +72,15 @@ def find_partition(
         What counts as an outlier and as a line, of a person.
     costs
         Of joints between these markers; filled on the way.
+    trim
+        Share of the frames left out of distances at either end.
 
     Raises
     ------
     BadRecording, DegenerateMotion
         As `kinesphere.skeleton.discovery.rigidity.measure_rigidity` does.
     """
-    rigidity = measure_rigidity(points, costs.unit)
+    rigidity = measure_rigidity(points, costs.unit, trim=trim)
     clustering = _clustered(rigidity, settings)
     bodies = members_of(clustering.labels)
     loose: list[int] = []

@@ -20,6 +20,8 @@ LEAST_FRAMES = 10
 """Frames that must show a marker, or two of them together, to say anything."""
 STILL = 3.0
 """Where no distance wanders so many times more than the steadiest ones do, nothing has moved."""
+MOST_TRIMMED = 0.05
+"""Share of a pair's frames that is left out at either end at most."""
 RESOLVED = 1e-5
 """Share of the usual distance between two markers below which nothing is told apart: no optical
 system does, and what is left of exactly rigid data is rounding error, of any pattern."""
@@ -37,8 +39,8 @@ class Rigidity:
     mean: Array
     """(n, n) m."""
     wander: Array
-    """(n, n) m, standard deviation of each distance, its outer 5 % at either end left out; NaN
-    where two markers are hardly ever seen together."""
+    """(n, n) m, standard deviation of each distance, the outer frames at either end left out that a
+    reflection may take up; NaN where two markers are hardly ever seen together."""
     noise: float
     """m, wander of the distance to a marker's steadiest neighbour, median over markers: what is
     steady in this recording. Never less than can be resolved."""
@@ -96,7 +98,16 @@ def longest_runs(seen: Mask, bridged: int = 0) -> NDArray[np.intp]:
     return longest
 
 
-def measure_rigidity(points: Array, unit: float = 1.0) -> Rigidity:
+def trimmed_share(seconds: float, ghost_s: float) -> float:
+    """Return which share of the frames a reflection's life may be, 5 % at most.
+
+    What a swap or a reflection does to a distance is left out at either end, and no more: one of
+    many joints moves in a few seconds of a minute, and 5 % of that minute would hide its bend.
+    """
+    return min(MOST_TRIMMED, ghost_s / seconds) if seconds > 0 else MOST_TRIMMED
+
+
+def measure_rigidity(points: Array, unit: float = 1.0, *, trim: float = MOST_TRIMMED) -> Rigidity:
     """Return how steady all distances are.
 
     Parameters
@@ -105,6 +116,8 @@ def measure_rigidity(points: Array, unit: float = 1.0) -> Rigidity:
         Markers that are seen, at a person's size; NaN where one is not.
     unit
         How many times larger the subject is; for messages.
+    trim
+        Share of a pair's frames left out at either end, see `trimmed_share`.
 
     Raises
     ------
@@ -119,7 +132,7 @@ def measure_rigidity(points: Array, unit: float = 1.0) -> Rigidity:
             f"{n} markers in {n_frames} frames; bodies are found from at least 3 markers in "
             f"{LEAST_FRAMES} frames"
         )
-    found = pair_distances(points)
+    found = pair_distances(points, trim=trim)
     wander = np.where(found.frames >= LEAST_FRAMES, found.trimmed_std, np.nan)
     finest = resolution(points, found.mean)
     wander = np.hypot(wander, finest * ~np.eye(n, dtype=bool))

@@ -53,7 +53,8 @@ class DiscoverySettings:
     ghost_s: float = setting(
         0.5,
         "a marker never around for so long, nor in half of the frames, is a reflection; breaks up "
-        "to a tenth of it do not count",
+        "to a tenth of it do not count. So much of the recording, 5 % at most, is left out of "
+        "every distance at either end",
         unit="s",
         low=0.0,
         high=60.0,
