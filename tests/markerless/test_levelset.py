@@ -12,7 +12,7 @@ from kinesphere.markerless.kernels.levelset import (
     recount_kernel,
     region_counts_kernel,
 )
-from kinesphere.markerless.kernels.votes import vote_kernel
+from kinesphere.markerless.kernels.votes import match_kernel, vote_kernel
 from kinesphere.markerless.levelset import (
     features_of,
     from_mask,
@@ -201,10 +201,48 @@ def test_votes_go_to_the_limb_of_the_many_near_rim_points():
     points = np.array([[11.0, 2.0], [11.0, 2.0], [40.0, 2.0]])
     looks = np.array([[1.0, 0.0], [-1.0, 0.0], [1.0, 0.0]])
     match, far = np.empty(3, dtype=np.int32), np.empty(3)
-    vote_kernel(points, looks, rim, normals, limbs, 8.0, 0.5, match, far)
+    back, far_back = np.empty(4, dtype=np.int32), np.empty(4)
+    vote_kernel(points, looks, rim, normals, limbs, 8.0, 0.5, match, back, far, far_back)
     assert match.tolist() == [1, -1, -1]  # the nearest of limb 0; looks away; too far
     assert far[0] == pytest.approx(1.0)
     assert np.isnan(far[1:]).all()
+    assert back.tolist() == [0, 0, 0, 0]
+    assert_allclose(far_back, np.hypot(*(rim - points[0]).T))
+
+
+def test_votes_both_ways_are_those_of_a_naive_twin(rng):
+    n, m, radius = 60, 40, 9.0
+    points, rim = rng.uniform(0, 60, (n, 2)), rng.uniform(0, 60, (m, 2))
+    normals, looks = (
+        np.stack([np.cos(a), np.sin(a)], 1) for a in rng.uniform(0, 6.3, (2, max(n, m)))
+    )
+    normals, looks = normals[:n], looks[:m]
+    limbs = rng.integers(0, 3, m).astype(np.int32)
+    match, far = np.empty(n, dtype=np.int32), np.empty(n)
+    back, far_back = np.empty(m, dtype=np.int32), np.empty(m)
+    vote_kernel(points, normals, rim, looks, limbs, radius, 0.5, match, back, far, far_back)
+    apart = np.linalg.norm(points[:, None] - rim, axis=2)
+    fits = (apart <= radius) & (normals @ looks.T >= 0.5)
+    nearest = np.where(fits, apart, np.inf)
+    votes = np.where(fits, 1 / (1 + (apart / (0.25 * radius)) ** 2) ** 2, 0)
+    for i in range(n):
+        chosen = np.argmax([votes[i, limbs == k].sum() for k in range(3)])
+        wanted = np.where(limbs == chosen, nearest[i], np.inf)
+        assert match[i] == (wanted.argmin() if fits[i].any() else -1)
+    assert 10 < (match >= 0).sum() < n
+    assert_array_equal(back, np.where(fits.any(axis=0), nearest.argmin(axis=0), -1))
+    assert_allclose(far_back[back >= 0], nearest.min(axis=0)[back >= 0])
+
+
+def test_pairs_far_apart_are_left_out():
+    rim = np.array([[10.0, 10], [10, 20], [10, 30]])
+    normals, limbs = np.tile([1.0, 0], (3, 1)), np.array([0, 1, 2], dtype=np.int32)
+    points = rim + np.array([[0.5, 0], [1, 0], [8, 0]])
+    which, target = match_kernel(points, normals, rim, normals, limbs, 9.0, 0.5, 3.0)
+    assert which.tolist() == target.tolist() == [0, 1, 0, 1]
+    nowhere = np.empty((0, 2))
+    which, _ = match_kernel(points, normals, nowhere, nowhere, limbs[:0], 9.0, 0.5, 3.0)
+    assert len(which) == 0
 
 
 def test_features_have_the_channels_their_name_says(rng):

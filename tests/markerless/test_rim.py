@@ -85,10 +85,12 @@ def test_a_body_behind_the_camera_is_not_seen(seen):
 def test_image_directions_are_derivatives(seen, rng):
     canvas, points, _, _, _ = seen
     view = canvas.view
-    some = points[rng.integers(0, len(points), 30)]
+    pairs = rng.integers(0, len(points), (30, 2)).astype(np.int32)
+    shares = rng.uniform(size=30)
+    some = points[pairs[:, 0]] + shares[:, None] * (points[pairs[:, 1]] - points[pairs[:, 0]])
     normals = rng.normal(size=(30, 2))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    directions = image_directions(view, some, normals)
+    directions = image_directions(view, points, pairs, shares, normals)
     small = 1e-6
     for axis in np.eye(3):
         pair = [plain_pixels(view, some + s * small * axis) for s in (-1, 1)]

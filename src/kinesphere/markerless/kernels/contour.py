@@ -16,7 +16,7 @@ NOWHERE = -1
 @kernel
 def project_kernel(
     points: Array, rotation: Array, shift: Array, lens: Array, pixels: Array, depths: Array
-) -> None:
+) -> tuple[float, float, float, float]:
     """Write pixels (NaN behind the camera) and depths of points seen by a pinhole.
 
     Parameters
@@ -28,7 +28,13 @@ def project_kernel(
         fx, fy, cx, cy in px.
     pixels, depths : (n, 2), (n,)
         Written.
+
+    Returns
+    -------
+    left, top, right, bottom : float
+        px, the outermost pixels; left > right where all is behind the camera.
     """
+    left, top, right, bottom = np.inf, np.inf, -np.inf, -np.inf
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
         w = rotation[2, 0] * x + rotation[2, 1] * y + rotation[2, 2] * z + shift[2]
@@ -41,12 +47,15 @@ def project_kernel(
         v = rotation[1, 0] * x + rotation[1, 1] * y + rotation[1, 2] * z + shift[1]
         pixels[i, 0] = lens[0] * u / w + lens[2]
         pixels[i, 1] = lens[1] * v / w + lens[3]
+        left, right = min(left, pixels[i, 0]), max(right, pixels[i, 0])
+        top, bottom = min(top, pixels[i, 1]), max(bottom, pixels[i, 1])
+    return left, top, right, bottom
 
 
 @kernel
-def parts_kernel(face_ids: Ints, part_of_face: Ints, top: int, bottom: int, parts: Ints) -> None:
-    """Write which limb each pixel shows, NOWHERE for none, in rows ``top`` to before ``bottom``."""
-    for row in range(top, bottom):
+def parts_kernel(face_ids: Ints, part_of_face: Ints, parts: Ints) -> None:
+    """Write which limb each pixel shows, NOWHERE for none; both (height, width)."""
+    for row in range(face_ids.shape[0]):
         for col in range(face_ids.shape[1]):
             f = face_ids[row, col]
             parts[row, col] = part_of_face[f] if f >= 0 else NOWHERE
@@ -171,3 +180,42 @@ def rim_kernel(
         if count == len(rim_edges):
             break
     return count
+
+
+@kernel
+def image_directions_kernel(
+    points: Array,
+    pairs: Ints,
+    shares: Array,
+    normals: Array,
+    rotation: Array,
+    shift: Array,
+    lens: Array,
+    directions: Array,
+) -> None:
+    """Write the world direction whose component moves a pixel along a normal, in px/m.
+
+    Parameters
+    ----------
+    points : (n_vertices, 3) m
+    pairs, shares : (n, 2), (n,)
+        A point lies between two vertices, ``shares`` of the way from the first to the second.
+    normals : (n, 2)
+        Unit vectors in the image.
+    rotation, shift, lens
+        As in `project_kernel`.
+    directions : (n, 3)
+        Written.
+    """
+    seen = np.empty(3)
+    for i in range(len(pairs)):
+        a, b, t = pairs[i, 0], pairs[i, 1], shares[i]
+        for k in range(3):
+            seen[k] = shift[k]
+            for j in range(3):
+                seen[k] += rotation[k, j] * ((1.0 - t) * points[a, j] + t * points[b, j])
+        depth = seen[2]
+        x, y = normals[i, 0] * lens[0] / depth, normals[i, 1] * lens[1] / depth
+        z = -(x * seen[0] + y * seen[1]) / depth
+        for j in range(3):
+            directions[i, j] = x * rotation[0, j] + y * rotation[1, j] + z * rotation[2, j]
