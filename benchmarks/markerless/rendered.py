@@ -39,6 +39,8 @@ class Case:
     """mm."""
     whole: bool = False
     """Whether no limb may be lost, where no other limit is set."""
+    to_fail: bool = False
+    """Whether the row is there to show that the limits are passed."""
 
     @property
     def limited(self) -> bool:
@@ -73,6 +75,8 @@ CASES = (
         other=True,
         given=True,
         seeds=(1, 2, 3, 4, 5),
+        rms=4.0,
+        to_fail=True,
     ),
     Case(
         "arms in clutter, coupled",
@@ -101,6 +105,11 @@ class Outcome:
 
     @property
     def missed(self) -> bool:
+        """Whether it fails and is not there to show that."""
+        return self.fails and not self.case.to_fail
+
+    @property
+    def fails(self) -> bool:
         """Whether a limit of the case is passed, or a limb lost."""
         if self.errors is None:
             return True

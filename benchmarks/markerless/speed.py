@@ -156,7 +156,7 @@ def page(results: list[tuple[Case, float, dict[str, float]]], n_frames: int) -> 
         f"The paper's system did {PAPER:g} frames/s with level sets, four cameras and the 21 "
         "degrees of freedom of the upper model, on a computer of 2006.",
         "",
-        "| model | degrees of freedom | method | equations | frames/s | wanted | times the paper's |",
+        "| model | unknowns | method | equations | frames/s | wanted | times the paper's |",
         "|---|--:|---|---|--:|--:|--:|",
     ]
     for case, rate, _ in results:
