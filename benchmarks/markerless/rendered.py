@@ -7,7 +7,7 @@ import numpy as np
 
 from benchmarks.markerless.given_start import disturbed_start
 from benchmarks.markerless.measures import Errors, errors_of
-from kinesphere.data import BodyChoice, bundled_body
+from kinesphere.data import BodyChoice, Footage, Frame, bundled_body
 from kinesphere.errors import KinesphereError
 from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.tracker import track
@@ -31,6 +31,9 @@ class Case:
     masks: bool = False
     given: bool = False
     """Whether the first pose is given but for 2° and 8 mm; else it is found."""
+    by: str = ""
+    """What a start that is found is found by: the images alone; ``plates`` of the empty room; or
+    ``masks`` of the first frame, perfect ones."""
     seeds: tuple[int, ...] = (1,)
     mean: float | None = None
     """deg, what the mean absolute error of the elbows is to stay below."""
@@ -55,6 +58,15 @@ CASES = (
     Case(
         "push-ups, shape fitted", "push-ups", other=True, given=True, mean=1.7, rms=2.3, joints=10
     ),
+    Case(
+        "push-ups, shape fitted, by plates",
+        "push-ups",
+        other=True,
+        by="plates",
+        mean=1.7,
+        rms=2.3,
+        joints=10,
+    ),
     Case("turn, three cameras", "turn", n_cameras=3, other=True, whole=True),
     Case("whole body", "body", other=True),
     Case("arms, perfect masks", "arms", masks=True, rms=0.7, joints=3),
@@ -64,6 +76,15 @@ CASES = (
         "clutter",
         other=True,
         given=True,
+        seeds=(1, 2, 3, 4, 5),
+        rms=4.0,
+    ),
+    Case(
+        "arms in clutter, region, by masks",
+        "arms",
+        "clutter",
+        other=True,
+        by="masks",
         seeds=(1, 2, 3, 4, 5),
         rms=4.0,
     ),
@@ -120,6 +141,20 @@ class Outcome:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class MasksOnce:
+    """Footage of which somebody has masked the first frame, and no other."""
+
+    footage: Footage
+
+    def frames(self, start: int, stop: int, step: int = 1) -> Iterator[Frame]:
+        """Yield frames."""
+        for frame in self.footage.frames(start, stop, step):
+            none = (None,) * len(frame.masks)
+            masks = none if frame.index else frame.masks
+            yield replace(frame, masks=masks, references=frame.masks)
+
+
 def outcomes(
     only: str = "", n_frames: int = 300, only_seed: int | None = None
 ) -> Iterator[Outcome]:
@@ -142,8 +177,11 @@ def _outcome(case: Case, seed: int, n_frames: int) -> Outcome:
         n_cameras=case.n_cameras,
         surface=person,
         masks=case.masks,
+        plates=case.by == "plates",
     )
     scene = replace(film.scene, n_frames=n_frames, body=BodyChoice(fit=case.other))
+    if case.by == "masks":
+        scene = replace(scene, footage=MasksOnce(film.footage), has_masks=True)
     try:
         start = disturbed_start(film, model, seed) if case.given else None
         tracked = track(scene, model, TrackSettings(method=case.method), start=start)

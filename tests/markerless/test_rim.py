@@ -6,8 +6,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from kinesphere.markerless.kernels.contour import NOWHERE
+from kinesphere.markerless.pieces import around
 from kinesphere.markerless.pose import bind_pose, moved, posed
-from kinesphere.markerless.rim import Canvas, around, image_directions
+from kinesphere.markerless.rim import Canvas, image_directions
 from kinesphere.markerless.views import view_of
 
 pytestmark = pytest.mark.slow  # in plain Python

@@ -13,8 +13,9 @@ from kinesphere.markerless.contours import Contour, contour_of, matches
 from kinesphere.markerless.fit import Eye, Fitter
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.levelset import Silhouette, cropped, from_mask, segment
+from kinesphere.markerless.pieces import around
 from kinesphere.markerless.pose import Pose, Posed, posed
-from kinesphere.markerless.rim import Rim, around, derivatives, image_directions
+from kinesphere.markerless.rim import Rim, derivatives, image_directions
 from kinesphere.markerless.solver import Normals, Prior, solve_step
 
 _DAMPING = 1e-3

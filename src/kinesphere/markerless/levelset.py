@@ -18,7 +18,7 @@ from kinesphere.markerless.kernels.levelset import (
     recount_kernel,
     region_counts_kernel,
 )
-from kinesphere.markerless.rim import around
+from kinesphere.markerless.pieces import around
 from kinesphere.markerless.settings import TrackSettings
 
 Phi = NDArray[np.float32]

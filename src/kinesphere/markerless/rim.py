@@ -10,12 +10,11 @@ from kinesphere.kernels.raster import visible_faces_kernel
 from kinesphere.markerless.body import Body
 from kinesphere.markerless.kernels.contour import (
     NOWHERE,
-    image_directions_kernel,
     parts_kernel,
     project_kernel,
     rim_kernel,
 )
-from kinesphere.markerless.kernels.jacobian import jacobian_kernel
+from kinesphere.markerless.kernels.jacobian import image_directions_kernel, jacobian_kernel
 from kinesphere.markerless.pose import Posed
 from kinesphere.markerless.views import View
 
@@ -191,15 +190,3 @@ def image_directions(
         points, pairs, shares, normals, view.rotation, view.shift, view.lens, directions
     )
     return directions
-
-
-def around(mask: NDArray[np.bool_], margin: int) -> tuple[slice, slice] | None:
-    """Return rows and columns that hold a mask and a margin; None for an empty mask."""
-    rows, cols = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    if len(rows) == 0:
-        return None
-    h, w = mask.shape
-    return (
-        slice(max(0, rows[0] - margin), min(h, rows[-1] + margin + 1)),
-        slice(max(0, cols[0] - margin), min(w, cols[-1] + margin + 1)),
-    )
