@@ -120,6 +120,38 @@ def test_limits_hold_and_leave_alone_what_is_within_them(whole, rng):
     assert_allclose(difference(chain, kept, limited(chain, kept)), 0, atol=1e-6)
 
 
+def test_limits_and_turns_are_those_of_matrices_in_the_textbook(whole, rng):
+    # a naive twin by scipy: swing brought back along the great circle, then twist about the limb
+    chain = whole.chain
+    for _ in range(20):
+        step = rng.normal(scale=1.5, size=chain.n_dofs)
+        start = moved(chain, bind_pose(chain), rng.normal(scale=1.0, size=chain.n_dofs))
+        wild = moved(chain, start, step)
+        turns = step[chain.turns].reshape(-1, 3)
+        for limb, turn in zip(chain.turned, turns, strict=True):
+            wanted = Rotation.from_rotvec(turn).as_matrix() @ start.balls[limb]
+            assert_allclose(wild.balls[limb], wanted, atol=EXACT)
+        kept = limited(chain, wild)
+        for i, link in enumerate(chain.links):
+            if link.kind != "ball":
+                continue
+            turn = Rotation.from_matrix(wild.balls[i])
+            pointing = turn.apply(link.long_axis)
+            angle = np.arccos(np.clip(pointing @ link.towards, -1, 1))
+            if angle > link.swing:
+                axis = np.cross(link.towards, pointing)
+                axis *= (link.swing - angle) / np.linalg.norm(axis)
+                turn = Rotation.from_rotvec(axis) * turn
+                pointing = turn.apply(link.long_axis)
+            across = np.cross(link.long_axis, pointing)
+            bent = np.arctan2(np.linalg.norm(across), link.long_axis @ pointing)
+            least = Rotation.from_rotvec(across * bent / np.linalg.norm(across))
+            twist = (least.inv() * turn).as_rotvec() @ link.long_axis
+            about = np.clip(twist, -link.twist, link.twist)
+            wanted = least * Rotation.from_rotvec(about * link.long_axis)
+            assert_allclose(kept.balls[i], wanted.as_matrix(), atol=1e-7)
+
+
 def test_a_turned_world_turns_the_body(whole, rng):
     chain = whole.chain
     pose = moved(chain, bind_pose(chain), rng.normal(scale=0.3, size=chain.n_dofs))

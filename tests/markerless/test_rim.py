@@ -6,8 +6,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from kinesphere.markerless.kernels.contour import NOWHERE
+from kinesphere.markerless.pieces import around
 from kinesphere.markerless.pose import bind_pose, moved, posed
-from kinesphere.markerless.rim import Canvas, around, image_directions
+from kinesphere.markerless.rim import Canvas, image_directions
 from kinesphere.markerless.views import view_of
 
 pytestmark = pytest.mark.slow  # in plain Python
@@ -85,10 +86,12 @@ def test_a_body_behind_the_camera_is_not_seen(seen):
 def test_image_directions_are_derivatives(seen, rng):
     canvas, points, _, _, _ = seen
     view = canvas.view
-    some = points[rng.integers(0, len(points), 30)]
+    pairs = rng.integers(0, len(points), (30, 2)).astype(np.int32)
+    shares = rng.uniform(size=30)
+    some = points[pairs[:, 0]] + shares[:, None] * (points[pairs[:, 1]] - points[pairs[:, 0]])
     normals = rng.normal(size=(30, 2))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    directions = image_directions(view, some, normals)
+    directions = image_directions(view, points, pairs, shares, normals)
     small = 1e-6
     for axis in np.eye(3):
         pair = [plain_pixels(view, some + s * small * axis) for s in (-1, 1)]

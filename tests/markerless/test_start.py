@@ -9,8 +9,8 @@ from kinesphere.errors import BadScene
 from kinesphere.markerless.anatomy import full_body
 from kinesphere.markerless.eyes import fitter_for
 from kinesphere.markerless.hull import visual_hull
-from kinesphere.markerless.hypotheses import arm_poses, facing, standing
-from kinesphere.markerless.pose import bind_pose, posed
+from kinesphere.markerless.hypotheses import arm_poses, facing, standing, turned_about
+from kinesphere.markerless.pose import bind_pose, limited, moved, posed
 from kinesphere.markerless.rim import Canvas
 from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.shape import shaped
@@ -105,6 +105,25 @@ def test_arms_are_tried_on_their_own_side_and_both_sides_alike(whole):
         names = whole.chain.limb_names
         rise = at.centres[names.index("left_forearm")] - at.centres[names.index("left_upper_arm")]
         assert low < rise[1] < high
+
+
+def test_turned_about_each_limb_is_where_its_other_one_was(whole):
+    chain, names = whole.chain, whole.chain.limb_names
+    pose = facing(standing(chain, "a-pose"), np.array([0.2, 0.9, 0.1]), np.array([1.0, 0, 1.0]))
+    step = np.zeros(chain.n_dofs)
+    step[whole.parameter_names.index("left_thigh.turn3")] = 0.4  # one leg ahead
+    step[whole.parameter_names.index("left_upper_arm.turn1")] = -0.3  # one arm higher
+    pose = limited(chain, moved(chain, pose, step))
+    before, other = posed(chain, pose), turned_about(chain, pose)
+    after = posed(chain, other)
+    assert_allclose(after.rotations[0][:, [0, 2]], -before.rotations[0][:, [0, 2]], atol=1e-12)
+    for limb in ("thigh", "shank", "upper_arm", "forearm"):
+        left, right = (names.index(f"{side}_{limb}") for side in ("left", "right"))
+        assert np.linalg.norm(before.centres[left] - before.centres[right]) > 0.1
+        for one, twin in ((left, right), (right, left)):
+            assert_allclose(after.centres[one], before.centres[twin], atol=0.06)
+    again = posed(chain, turned_about(chain, other))
+    assert_allclose(again.centres, before.centres, atol=1e-9)
 
 
 def test_a_pose_taken_over_by_the_upper_model_keeps_the_arms(whole, upper):

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array
+from kinesphere.data import Array, Mask
 from kinesphere.errors import BadModel
 
 SLIDE, BALL, HINGE = 0, 1, 2
@@ -91,6 +91,49 @@ class Chain:
         return np.array([k for kinds_of_limb in each for k in kinds_of_limb], dtype=np.intp)
 
     @cached_property
+    def slides(self) -> Mask:
+        """(n_dofs,) which degrees of freedom are the root's shifts."""
+        return np.asarray(self.dof_kinds == SLIDE)
+
+    @cached_property
+    def turns(self) -> Mask:
+        """(n_dofs,) which belong to balls."""
+        return np.asarray(self.dof_kinds == BALL)
+
+    @cached_property
+    def hinges(self) -> Mask:
+        """(n_dofs,) which are hinges."""
+        return np.asarray(self.dof_kinds == HINGE)
+
+    @cached_property
+    def turned(self) -> NDArray[np.intp]:
+        """(n_balls,) the limbs that hang on balls, the root among them."""
+        return np.ascontiguousarray(self.dof_limbs[self.turns][::3])
+
+    @cached_property
+    def cones(self) -> tuple[Array, Array, Array, Array]:
+        """Limits of balls by limb: long axes, middles, (n_limbs, 3); swings, twists, (n_limbs,)."""
+        links = self.links
+        return (
+            np.array([link.long_axis for link in links], dtype=np.float64),
+            np.array([link.towards for link in links], dtype=np.float64),
+            np.array([link.swing for link in links], dtype=np.float64),
+            np.array([link.twist for link in links], dtype=np.float64),
+        )
+
+    @cached_property
+    def limited(self) -> NDArray[np.intp]:
+        """The limbs on balls that have limits."""
+        return np.array(
+            [
+                i
+                for i, link in enumerate(self.links)
+                if link.kind == "ball" and (link.swing < np.pi or link.twist < np.pi)
+            ],
+            dtype=np.intp,
+        )
+
+    @cached_property
     def dof_axes(self) -> Array:
         """(n_dofs, 3) unit vectors, in the parent's frame in the bind pose."""
         eye = np.eye(3)
@@ -101,11 +144,10 @@ class Chain:
     def limits(self) -> tuple[Array, Array]:
         """Least and greatest angle of every degree of freedom, (n_dofs,) rad; infinite if none."""
         low, high = np.full(self.n_dofs, -np.inf), np.full(self.n_dofs, np.inf)
-        hinges = self.dof_kinds == HINGE
         jointed = [link for link in self.links if link.kind == "axes"]
         if jointed:
-            low[hinges] = np.concatenate([link.low for link in jointed])
-            high[hinges] = np.concatenate([link.high for link in jointed])
+            low[self.hinges] = np.concatenate([link.low for link in jointed])
+            high[self.hinges] = np.concatenate([link.high for link in jointed])
         return low, high
 
     @cached_property

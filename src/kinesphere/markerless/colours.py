@@ -17,7 +17,8 @@ from kinesphere.markerless.kernels.colour import (
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.kernels.lines import SAMPLES
 from kinesphere.markerless.kernels.region import log_ratios_kernel, region_score_kernel
-from kinesphere.markerless.rim import Parts, Rim, around
+from kinesphere.markerless.pieces import around
+from kinesphere.markerless.rim import Parts, Rim
 
 _MARGIN = 20
 """px around the model in which a person is looked for."""

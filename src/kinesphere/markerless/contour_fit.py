@@ -6,13 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array
+from kinesphere.geometry.rotations import hat
 from kinesphere.geometry.twists import incidence
+from kinesphere.geometry.vectors import lengths
 from kinesphere.markerless.contours import Contour, contour_of, matches
 from kinesphere.markerless.fit import Eye, Fitter
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.levelset import Silhouette, cropped, from_mask, segment
+from kinesphere.markerless.pieces import around
 from kinesphere.markerless.pose import Pose, Posed, posed
-from kinesphere.markerless.rim import Rim, around, derivatives, image_directions
+from kinesphere.markerless.rim import Rim, derivatives, image_directions
 from kinesphere.markerless.solver import Normals, Prior, solve_step
 
 _DAMPING = 1e-3
@@ -51,7 +54,12 @@ class ContourFitter:
             for k in range(iterations):
                 radius = s.radius / (1 + i * iterations + k) ** 0.5
                 pose, step = self._step(
-                    pose, contours, priors, radius, scale if by_limb else None, k % _DRAWN == 0
+                    pose,
+                    contours,
+                    priors,
+                    radius,
+                    scale if by_limb else None,
+                    k > 0 and k % _DRAWN == 0,
                 )
                 if step < 1e-4:
                     break
@@ -60,6 +68,7 @@ class ContourFitter:
     def _contours(
         self, pose: Pose, shape: float, scale: int, by_limb: bool
     ) -> list[Contour | None]:
+        """Find the contours, and leave the pose drawn on every canvas."""
         contours: list[Contour | None] = []
         s = self.fitter.settings
         points = self.fitter.body.skinned(posed(self.fitter.body.chain, pose))
@@ -106,7 +115,7 @@ class ContourFitter:
                 continue
             rim = _part(whole, which)
             add = _add_plucker if s.equations == "plucker" else _add_image
-            add(self.fitter, eye, at, rim, targets, outward, equations)
+            add(self.fitter, eye, at, points, rim, targets, outward, equations)
         return solve_step(body.chain, pose, equations, priors, _DAMPING)
 
 
@@ -118,16 +127,15 @@ def _add_image(
     fitter: Fitter,
     eye: Eye,
     at: Posed,
+    surface: Array,
     rim: Rim,
     targets: Array,
     outward: Array,
     equations: Normals,
 ) -> None:
     """Add how far rim points are from the contour across it, in px."""
-    view = eye.canvas.view
-    points, _ = derivatives(fitter.body, at, rim.pairs, rim.shares, np.zeros((len(targets), 0, 3)))
-    directions = image_directions(view, points, outward)[:, None]
-    _, rows = derivatives(fitter.body, at, rim.pairs, rim.shares, directions)
+    directions = image_directions(eye.canvas.view, surface, rim.pairs, rim.shares, outward)
+    _, rows = derivatives(fitter.body, at, rim.pairs, rim.shares, directions[:, None])
     residual = ((targets - rim.pixels) * outward).sum(axis=1)
     weight = fitter.settings.data_weight / (1 + (residual / 6.0) ** 2)
     equations.add(rows[:, 0], residual, weight)
@@ -137,9 +145,10 @@ def _add_plucker(
     fitter: Fitter,
     eye: Eye,
     at: Posed,
+    _: Array,
     rim: Rim,
     targets: Array,
-    _: Array,
+    __: Array,
     equations: Normals,
 ) -> None:
     """Add X × n − m = 0, three equations of rank two a match (equation 12), in px at its depth."""
@@ -149,15 +158,13 @@ def _add_plucker(
         [(targets[:, 0] - cx) / fx, (targets[:, 1] - cy) / fy, np.ones(len(targets))]
     )
     n = plane @ view.rotation
-    n /= np.linalg.norm(n, axis=1, keepdims=True)
-    moment = np.cross(view.centre, n)
-    # the derivative of X × n along e is e · (dX × n) = dX · (n × e)
-    directions = np.cross(n[:, None], np.eye(3)[None])
-    points, rows = derivatives(fitter.body, at, rim.pairs, rim.shares, directions)
-    error = -incidence(points, n, moment)
+    n /= lengths(n)[:, None]
+    # the derivative of X × n along e is e · (dX × n) = dX · (n × e), and n × e a row of -hat(n)
+    points, rows = derivatives(fitter.body, at, rim.pairs, rim.shares, -hat(n))
+    error = -incidence(points, n, n @ hat(view.centre).T)
     depth = points @ view.rotation[2] + view.shift[2]
     scale = fx / depth  # px a metre, so that cameras near and far count alike
-    far = np.linalg.norm(error, axis=1) * scale
+    far = lengths(error) * scale
     weight = fitter.settings.data_weight * scale**2 / (1 + (far / 6.0) ** 2)
     n_dofs = rows.shape[2]
     equations.add(rows.reshape(-1, n_dofs), error.ravel(), np.repeat(weight, 3))

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from kinesphere.data import Array
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.kernels.levelset import contour_kernel
-from kinesphere.markerless.kernels.votes import vote_kernel
+from kinesphere.markerless.kernels.votes import match_kernel
 from kinesphere.markerless.levelset import Silhouette
 from kinesphere.markerless.rim import Rim
 from kinesphere.markerless.views import View
@@ -53,30 +53,15 @@ def matches(contour: Contour, rim: Rim, radius: float) -> tuple[NDArray[np.intp]
         Rim points, and the contour points and normals they belong to.
     """
     outer = np.flatnonzero(rim.parts[:, 1] == NOWHERE)
-    pixels, normals = rim.pixels[outer], rim.normals[outer]
     limbs = np.ascontiguousarray(rim.parts[outer, 0])
-    inward, far_in = _voted(contour.points, contour.normals, pixels, normals, limbs, radius)
-    one = np.zeros(len(contour.points), dtype=np.int32)
-    outward, far_out = _voted(pixels, normals, contour.points, contour.normals, one, radius)
-    i, o = np.flatnonzero(inward >= 0), np.flatnonzero(outward >= 0)
-    which = np.concatenate([outer[inward[i]], outer[o]])
-    target = np.concatenate([i, outward[o]])
-    far = np.concatenate([far_in[i], far_out[o]])
-    if len(far):
-        kept = far <= max(REJECT * float(np.median(far)), 2.0)
-        which, target = which[kept], target[kept]
-    return which, contour.points[target], contour.normals[target]
-
-
-def _voted(
-    points: Array,
-    normals: Array,
-    rim_pixels: Array,
-    rim_normals: Array,
-    limbs: NDArray[np.int32],
-    radius: float,
-) -> tuple[NDArray[np.int32], Array]:
-    match, far = np.full(len(points), -1, dtype=np.int32), np.full(len(points), np.nan)
-    if len(limbs):
-        vote_kernel(points, normals, rim_pixels, rim_normals, limbs, radius, AGREE, match, far)
-    return match, far
+    which, target = match_kernel(
+        contour.points,
+        contour.normals,
+        rim.pixels[outer],
+        rim.normals[outer],
+        limbs,
+        radius,
+        AGREE,
+        REJECT,
+    )
+    return outer[which], contour.points[target], contour.normals[target]

@@ -102,9 +102,8 @@ class Fitter:
         offset, variance, agreement = self.edges(eye, rim, parts, scale)
         weight = np.isfinite(agreement) / (variance + _FLOOR)
         weight *= self.settings.data_weight / (1 + (offset / _FAR) ** 2)
-        on_rim = _between(points, rim)
-        directions = image_directions(eye.canvas.view, on_rim, rim.normals)[:, None]
-        _, rows = derivatives(self.body, at, rim.pairs, rim.shares, directions)
+        directions = image_directions(eye.canvas.view, points, rim.pairs, rim.shares, rim.normals)
+        _, rows = derivatives(self.body, at, rim.pairs, rim.shares, directions[:, None])
         equations.add(rows[:, 0], offset * scale, weight / scale**2)
 
     def edges(self, eye: Eye, rim: Rim, parts: Parts, scale: int) -> tuple[Array, Array, Array]:
@@ -148,8 +147,3 @@ class Fitter:
         for eye in self.open_eyes:
             eye.evidence.score(eye.canvas.draw(points), scores, counts)
         return scores, counts
-
-
-def _between(points: Array, rim: Rim) -> Array:
-    share = rim.shares[:, None]
-    return np.asarray((1 - share) * points[rim.pairs[:, 0]] + share * points[rim.pairs[:, 1]])

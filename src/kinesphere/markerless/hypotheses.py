@@ -122,6 +122,25 @@ def facing(pose: Pose, position: Array, heading: Array, up: Array = UP) -> Pose:
     return replace(pose, position=np.asarray(position, dtype=np.float64), balls=balls)
 
 
+def turned_about(chain: Chain, pose: Pose) -> Pose:
+    """Return the pose of someone who looks the other way, each limb about where its other one was.
+
+    Silhouettes hardly tell the two apart. Knees and elbows keep the way they bend.
+    """
+    names = chain.limb_names
+    other = {"left": "right", "right": "left"}
+    flip = np.diag([-1.0, 1.0, -1.0])  # half a turn about the body's own length
+    balls, angles = pose.balls.copy(), pose.angles.copy()
+    balls[0] = pose.balls[0] @ flip
+    for limb, name in enumerate(names):
+        side, _, rest = name.partition("_")
+        twin = names.index(f"{other[side]}_{rest}") if side in other else limb
+        if limb:
+            balls[limb] = flip @ pose.balls[twin] @ flip
+        angles[chain.dof_limbs == limb] = pose.angles[chain.dof_limbs == twin]
+    return limited(chain, replace(pose, balls=balls, angles=angles))
+
+
 def hinge(chain: Chain, limb: str) -> tuple[int, float]:
     """Return the first degree of freedom of a hinge, and its flexion in the bind pose in rad."""
     i = chain.limb_names.index(limb)

@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array
+from kinesphere.markerless.kernels.distance import near_distance_kernel
+from kinesphere.markerless.kernels.evolution import band_runs_kernel, evolve_kernel
 from kinesphere.markerless.kernels.levelset import (
-    evolve_kernel,
     ratios_kernel,
+    recount_kernel,
     region_counts_kernel,
 )
-from kinesphere.markerless.rim import around
+from kinesphere.markerless.pieces import around
 from kinesphere.markerless.settings import TrackSettings
 
 Phi = NDArray[np.float32]
@@ -25,6 +27,8 @@ _FLOOR = 1e-4
 """Density that every value has at least: nothing is impossible."""
 _BAND = 8.0
 """px to either side of the contour in which it moves."""
+_NEAR = 10
+"""px; so far must Φ be a distance for the band and the pixels beside it."""
 _FAR = 60.0
 """px; Φ goes no farther: beyond the band only its sign counts."""
 
@@ -49,18 +53,25 @@ def signed_distance(mask: NDArray[np.uint8]) -> Phi:
     return np.clip(phi, -_FAR, _FAR).astype(np.float32)
 
 
+def near_distance(mask: NDArray[np.bool_], reach: int = _NEAR) -> Phi:
+    """Return the same, (height, width), cut at ``reach`` px from the edge: three times as fast."""
+    phi = np.empty(mask.shape, dtype=np.float32)
+    near_distance_kernel(mask, reach, phi)
+    return phi
+
+
 def features_of(picture: NDArray[np.uint8], kind: str) -> NDArray[np.uint8]:
     """Return the features of an image, (height, width, n): grey; Lab; Lab and texture.
 
     Texture is the local standard deviation of grey, in place of the scale of Brox & Weickert
     (2004), and takes a part of their role at a hundredth of their cost.
     """
+    if kind == "colour":
+        return np.ascontiguousarray(cv2.cvtColor(picture, cv2.COLOR_RGB2LAB))
     grey = np.asarray(cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY))
     if kind == "grey":
         return np.ascontiguousarray(grey[..., None])
     lab = np.asarray(cv2.cvtColor(picture, cv2.COLOR_RGB2LAB))
-    if kind == "colour":
-        return np.ascontiguousarray(lab)
     value = grey.astype(np.float32)
     mean = cv2.blur(value, (7, 7))
     spread = np.sqrt(np.maximum(cv2.blur(value * value, (7, 7)) - mean * mean, 0))
@@ -105,34 +116,44 @@ def segment(
         if box is None:
             return None
         rows, cols = box
-    prior = signed_distance(np.ascontiguousarray(model[rows, cols]).astype(np.uint8))
-    size = prior.shape[1], prior.shape[0]
+    covered = np.ascontiguousarray(model[rows, cols])
+    size = covered.shape[1], covered.shape[0]
+    if shape:  # the contour is drawn to the model from wherever it has strayed to
+        prior = signed_distance(covered.astype(np.uint8))
+    else:
+        prior = near_distance(covered, _NEAR * scale)
     prior = _smaller(prior, scale) / np.float32(scale)
     phi = prior.copy() if start is None else _smaller(start.phi, scale) / np.float32(scale)
+    inside = phi > 0
     if known is None:
         small = _smaller(np.ascontiguousarray(picture[rows, cols]), scale)
         features = features_of(small, settings.features)
         counts, force = np.empty((2, features.shape[2], 256)), np.zeros_like(phi)
+        region_counts_kernel(features, inside, counts)
     else:
         force = _smaller(np.ascontiguousarray(known[rows, cols]), scale)
     for i in range(settings.rounds):
+        if i % 2 == 0:
+            phi = near_distance(inside) if i else phi
+            runs = band_runs_kernel(phi, _BAND)
         if known is None:
-            region_counts_kernel(features, phi, counts)
-            ratios_kernel(features, phi, _ratios(counts, settings.blur), _BAND, force)
+            ratios_kernel(features, runs, _ratios(counts, settings.blur), force)
         evolve_kernel(
             phi,
+            runs,
             force,
             settings.length,
             shape,
             prior,
             settings.shape_term == "inside",
             2.0,
-            _BAND,
             0.7,
             settings.evolution,
         )
-        if i % 2:
-            phi = signed_distance((phi > 0).astype(np.uint8)) if i + 1 < settings.rounds else phi
+        if known is None:
+            recount_kernel(features, phi, runs, inside, counts)
+        else:
+            inside = phi > 0
     if scale > 1:
         phi = cv2.resize(phi, size, interpolation=cv2.INTER_LINEAR) * np.float32(scale)
     return Silhouette(phi, cols.start, rows.start)

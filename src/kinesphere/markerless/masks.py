@@ -8,7 +8,8 @@ from kinesphere.markerless.evidence import MOST, STRIDE, Levels
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.kernels.lines import SAMPLES, mask_samples_kernel
 from kinesphere.markerless.kernels.region import mask_score_kernel
-from kinesphere.markerless.rim import Parts, Rim, around
+from kinesphere.markerless.pieces import around
+from kinesphere.markerless.rim import Parts, Rim
 
 _NOTHING = np.zeros((2, 2), dtype=np.uint8)
 

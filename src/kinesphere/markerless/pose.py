@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.geometry.rotations import rotation_about, rotation_between, rotation_log
-from kinesphere.geometry.twists import twist_exp
-from kinesphere.markerless.chain import BALL, HINGE, SLIDE, Chain
+from kinesphere.markerless.chain import Chain
 from kinesphere.markerless.kernels.posing import pose_kernel
+from kinesphere.markerless.kernels.turns import limit_kernel, turn_kernel, turns_between_kernel
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,52 +71,30 @@ def moved(chain: Chain, pose: Pose, step: Array) -> Pose:
         vector, put before the turn there is), about their own for hinges.
     """
     balls = pose.balls.copy()
-    kinds, limbs = chain.dof_kinds, chain.dof_limbs
-    turns = step[kinds == BALL].reshape(-1, 3)
-    turned = limbs[kinds == BALL][::3]
-    balls[turned] = twist_exp(np.pad(turns, ((0, 0), (3, 0))))[:, :3, :3] @ balls[turned]
+    turn_kernel(balls, chain.turned, np.ascontiguousarray(step[chain.turns]).reshape(-1, 3))
     return Pose(
-        pose.position + step[kinds == SLIDE],
+        pose.position + step[chain.slides],
         balls,
-        pose.angles + np.where(kinds == HINGE, step, 0.0),
+        pose.angles + np.where(chain.hinges, step, 0.0),
     )
 
 
 def difference(chain: Chain, start: Pose, end: Pose) -> Array:
     """Return the step from one pose to another, (n_dofs,): ``moved(start, step)`` is ``end``."""
-    kinds, limbs = chain.dof_kinds, chain.dof_limbs
     step = end.angles - start.angles
-    step[kinds == SLIDE] = end.position - start.position
-    turned = limbs[kinds == BALL][::3]
-    relative = end.balls[turned] @ np.swapaxes(start.balls[turned], 1, 2)
-    step[kinds == BALL] = rotation_log(relative).ravel()
+    step[chain.slides] = end.position - start.position
+    turns = np.empty((len(chain.turned), 3))
+    turns_between_kernel(start.balls, end.balls, chain.turned, turns)
+    step[chain.turns] = turns.ravel()
     return step
 
 
 def limited(chain: Chain, pose: Pose, limbs: Sequence[int] | None = None) -> Pose:
     """Return the nearest pose within the joints' limits; balls only of some limbs, if named."""
     balls = pose.balls.copy()
-    for i in range(len(chain.links)) if limbs is None else limbs:
-        link = chain.links[i]
-        if link.kind == "ball" and (link.swing < np.pi or link.twist < np.pi):
-            balls[i] = _limited_ball(balls[i], link.long_axis, link.towards, link.swing, link.twist)
-    return replace(pose, balls=balls, angles=np.clip(pose.angles, *chain.limits))
-
-
-def _limited_ball(
-    turn: Array, long_axis: Array, towards: Array, swing: float, twist: float
-) -> Array:
-    pointing = turn @ long_axis
-    angle = np.arccos(np.clip(pointing @ towards, -1.0, 1.0))
-    if angle > swing:
-        axis = np.cross(towards, pointing)
-        size = np.linalg.norm(axis)
-        if size > 0:
-            turn = rotation_about(axis / size, np.asarray(swing - angle)) @ turn
-            pointing = turn @ long_axis
-    least = rotation_between(long_axis, pointing)
-    about = float(rotation_log(least.T @ turn) @ long_axis)
-    if abs(about) <= twist:
-        return turn
-    kept = rotation_about(long_axis, np.asarray(np.clip(about, -twist, twist)))
-    return np.asarray(least @ kept)
+    bound = chain.limited
+    if limbs is not None:
+        bound = np.array([i for i in limbs if i in bound], dtype=np.intp)
+    limit_kernel(balls, bound, *chain.cones)
+    low, high = chain.limits
+    return replace(pose, balls=balls, angles=np.minimum(np.maximum(pose.angles, low), high))

@@ -14,7 +14,7 @@ from kinesphere.markerless.kernels.contour import (
     project_kernel,
     rim_kernel,
 )
-from kinesphere.markerless.kernels.jacobian import jacobian_kernel
+from kinesphere.markerless.kernels.jacobian import image_directions_kernel, jacobian_kernel
 from kinesphere.markerless.pose import Posed
 from kinesphere.markerless.views import View
 
@@ -57,7 +57,7 @@ class Canvas:
         self._nearness = np.zeros((h, w), dtype=np.float32)
         self._faces = np.full((h, w), NOWHERE, dtype=np.int32)
         self._parts = np.full((h, w), NOWHERE, dtype=np.int32)
-        self._rows = (0, h)
+        self._box = slice(0, h), slice(0, w)
         self._taken = np.zeros((h // cell + 1, w // cell + 1), dtype=bool)
         most = self._taken.size
         self._rim = (
@@ -76,23 +76,21 @@ class Canvas:
 
     def draw(self, points: Array) -> Parts:
         """Draw the surface, (n_vertices, 3) m in the world; the buffers are this canvas' own."""
-        view, h = self.view, self.view.height
-        top, bottom = self._rows
-        self._nearness[top:bottom] = 0.0
-        self._faces[top:bottom] = NOWHERE
-        self._parts[top:bottom] = NOWHERE
-        project_kernel(points, view.rotation, view.shift, view.lens, self._pixels, self._depths)
-        rows = self._pixels[:, 1]
-        rows = rows[np.isfinite(rows)]
-        if len(rows) == 0:
-            self._rows = (0, 0)
-            return self.drawn
-        top, bottom = (int(np.clip(r, 0, h)) for r in (rows.min() - 1, rows.max() + 2))
-        self._rows = (top, bottom)
+        view = self.view
+        for buffer, nothing in (
+            (self._nearness, 0),
+            (self._faces, NOWHERE),
+            (self._parts, NOWHERE),
+        ):
+            buffer[self._box] = nothing
+        left, top, right, bottom = project_kernel(
+            points, view.rotation, view.shift, view.lens, self._pixels, self._depths
+        )
+        self._box = _within(top, bottom, view.height), _within(left, right, view.width)
         visible_faces_kernel(
             self._pixels, self._depths, self.body.faces, True, self._nearness, self._faces
         )
-        parts_kernel(self._faces, self.body.part_of_face, top, bottom, self._parts)
+        parts_kernel(self._faces[self._box], self.body.part_of_face, self._parts[self._box])
         return self.drawn
 
     def rim(self, points: Array, normals: Array, parts: Parts) -> Rim:
@@ -126,6 +124,13 @@ class Canvas:
             directions[:n].copy(),
             limbs[:n].copy(),
         )
+
+
+def _within(first: float, last: float, size: int) -> slice:
+    """Return the rows or columns of an image from one pixel to another, and one more."""
+    if not first <= last:
+        return slice(0, 0)
+    return slice(int(min(max(first - 1, 0), size)), int(min(max(last + 2, 0), size)))
 
 
 def derivatives(
@@ -166,30 +171,22 @@ def derivatives(
     return points, rows
 
 
-def image_directions(view: View, points: Array, normals: Array) -> Array:
-    """Return the world direction whose component moves a pixel along a normal, (n, 3) px/m.
+def image_directions(
+    view: View, points: Array, pairs: NDArray[np.int32], shares: Array, normals: Array
+) -> Array:
+    """Return the world directions whose components move pixels along normals, (n, 3) px/m.
 
     Parameters
     ----------
-    points : (n, 3) m
+    points : (n_vertices, 3) m
+        The surface in the world.
+    pairs, shares : (n, 2), (n,)
+        As in `Rim`.
     normals : (n, 2)
         Unit vectors in the image.
     """
-    seen = points @ view.rotation.T + view.shift
-    fx, fy = view.lens[:2]
-    x, y = normals[:, 0] * fx, normals[:, 1] * fy
-    depth = seen[:, 2]
-    in_camera = np.stack([x, y, -(x * seen[:, 0] + y * seen[:, 1]) / depth], axis=1)
-    return np.asarray((in_camera / depth[:, None]) @ view.rotation)
-
-
-def around(mask: NDArray[np.bool_], margin: int) -> tuple[slice, slice] | None:
-    """Return rows and columns that hold a mask and a margin; None for an empty mask."""
-    rows, cols = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    if len(rows) == 0:
-        return None
-    h, w = mask.shape
-    return (
-        slice(max(0, rows[0] - margin), min(h, rows[-1] + margin + 1)),
-        slice(max(0, cols[0] - margin), min(w, cols[-1] + margin + 1)),
+    directions = np.empty((len(pairs), 3))
+    image_directions_kernel(
+        points, pairs, shares, normals, view.rotation, view.shift, view.lens, directions
     )
+    return directions

@@ -121,7 +121,7 @@ def _equations(
         offset, variance, agreement = fitter.edges(eye, rim, parts, scale)
         weight = np.isfinite(agreement) / (variance + 0.05)
         weight *= s.data_weight / (1 + (offset / 3.0) ** 2)
-        directions = image_directions(eye.canvas.view, _between(points, rim), rim.normals)
+        directions = image_directions(eye.canvas.view, points, rim.pairs, rim.shares, rim.normals)
         _, rows = derivatives(body, at, rim.pairs, rim.shares, directions[:, None])
         by_shape = [(directions * _between(slope, rim)).sum(axis=1) for slope in slopes]
         full = np.concatenate([rows[:, 0], np.column_stack(by_shape)], axis=1)

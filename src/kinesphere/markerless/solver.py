@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.markerless.chain import SLIDE, Chain
+from kinesphere.markerless.chain import Chain
 from kinesphere.markerless.pose import Pose, difference, limited, moved
 
 STEP = 0.4
@@ -64,9 +64,9 @@ def solve_step(
     # what nothing speaks of stays where it is
     h[diagonal, diagonal] += 1e-9 * (1 + h[diagonal, diagonal])
     step = _held_solution(chain, pose, h, g)
-    reach = np.where(chain.dof_kinds == SLIDE, STEP, STEP)
-    step = step * min(1.0, float((reach / np.maximum(np.abs(step), 1e-12)).min()))
-    return limited(chain, moved(chain, pose, step)), float(np.abs(step).max())
+    largest = float(np.abs(step).max())
+    step *= min(1.0, STEP / max(largest, 1e-12))
+    return limited(chain, moved(chain, pose, step)), min(largest, STEP)
 
 
 def _held_solution(chain: Chain, pose: Pose, h: Array, g: Array) -> Array:
@@ -74,8 +74,11 @@ def _held_solution(chain: Chain, pose: Pose, h: Array, g: Array) -> Array:
     free = np.ones(chain.n_dofs, dtype=bool)
     step = np.zeros(chain.n_dofs)
     for _ in range(3):
-        step[:] = 0
-        step[free] = np.linalg.solve(h[np.ix_(free, free)], g[free])
+        if free.all():
+            step[:] = np.linalg.solve(h, g)
+        else:
+            step[:] = 0
+            step[free] = np.linalg.solve(h[np.ix_(free, free)], g[free])
         beyond = ((pose.angles + step > high) & (pose.angles >= high - 1e-6)) | (
             (pose.angles + step < low) & (pose.angles <= low + 1e-6)
         )

@@ -12,7 +12,7 @@ from kinesphere.markerless.body import Body
 from kinesphere.markerless.eyes import with_body
 from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.hull import visual_hull
-from kinesphere.markerless.hypotheses import facing, leg_poses, standing
+from kinesphere.markerless.hypotheses import facing, leg_poses, standing, turned_about
 from kinesphere.markerless.kernels.contour import NOWHERE
 from kinesphere.markerless.pose import Pose, posed
 from kinesphere.markerless.prediction import rest
@@ -116,6 +116,10 @@ def find_start(
     with_legs = [_searched(one, _with_legs) for one in _unlike(_best(coarse), _COARSE)]
     whole = [_searched(one, _with_arms) for one in _best(with_legs)[:_WHOLE]]
     last = [_closely(fitter, surface, model, masks, one, fit=fit) for one in _best(whole)[:_LAST]]
+    if heading is None:  # from behind, a person looks much the same
+        other = replace(_best(last)[0], pose=turned_about(fitter.body.chain, _best(last)[0].pose))
+        other = _searched(other, _with_legs)
+        last.append(_closely(fitter, surface, model, masks, _searched(other, _with_arms), fit=fit))
     best = _best(last)[0]
     whole_body = with_body(fitter, model(shaped(surface, best.logs)))
     return Start(best.pose, best.logs, overlaps(whole_body, best.pose, masks))

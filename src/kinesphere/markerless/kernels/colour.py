@@ -171,10 +171,14 @@ def blurred_kernel(counts: NDArray[np.float32], side: int, smooth: NDArray[np.fl
     now = counts / np.float32(total)
     stride = 1
     for _ in range(3):
-        for b in range(len(counts)):
-            at = (b // stride) % side
-            low = now[b - stride] if at > 0 else now[b]
-            high = now[b + stride] if at < side - 1 else now[b]
-            smooth[b] = 0.5 * now[b] + 0.25 * (low + high)
+        for first in range(0, len(counts), stride * side):
+            for at in range(side):
+                here = first + at * stride
+                below = here - stride if at > 0 else here
+                above = here + stride if at < side - 1 else here
+                for b in range(stride):
+                    smooth[here + b] = 0.5 * now[here + b] + 0.25 * (
+                        now[below + b] + now[above + b]
+                    )
         now = smooth.copy()
         stride *= side

@@ -16,7 +16,7 @@ NOWHERE = -1
 @kernel
 def project_kernel(
     points: Array, rotation: Array, shift: Array, lens: Array, pixels: Array, depths: Array
-) -> None:
+) -> tuple[float, float, float, float]:
     """Write pixels (NaN behind the camera) and depths of points seen by a pinhole.
 
     Parameters
@@ -28,7 +28,13 @@ def project_kernel(
         fx, fy, cx, cy in px.
     pixels, depths : (n, 2), (n,)
         Written.
+
+    Returns
+    -------
+    left, top, right, bottom : float
+        px, the outermost pixels; left > right where all is behind the camera.
     """
+    left, top, right, bottom = np.inf, np.inf, -np.inf, -np.inf
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
         w = rotation[2, 0] * x + rotation[2, 1] * y + rotation[2, 2] * z + shift[2]
@@ -41,12 +47,15 @@ def project_kernel(
         v = rotation[1, 0] * x + rotation[1, 1] * y + rotation[1, 2] * z + shift[1]
         pixels[i, 0] = lens[0] * u / w + lens[2]
         pixels[i, 1] = lens[1] * v / w + lens[3]
+        left, right = min(left, pixels[i, 0]), max(right, pixels[i, 0])
+        top, bottom = min(top, pixels[i, 1]), max(bottom, pixels[i, 1])
+    return left, top, right, bottom
 
 
 @kernel
-def parts_kernel(face_ids: Ints, part_of_face: Ints, top: int, bottom: int, parts: Ints) -> None:
-    """Write which limb each pixel shows, NOWHERE for none, in rows ``top`` to before ``bottom``."""
-    for row in range(top, bottom):
+def parts_kernel(face_ids: Ints, part_of_face: Ints, parts: Ints) -> None:
+    """Write which limb each pixel shows, NOWHERE for none; both (height, width)."""
+    for row in range(face_ids.shape[0]):
         for col in range(face_ids.shape[1]):
             f = face_ids[row, col]
             parts[row, col] = part_of_face[f] if f >= 0 else NOWHERE

@@ -103,3 +103,42 @@ def jacobian_kernel(
             share[touched[j]] = 0.0
             for m in range(3):
                 moment[touched[j], m] = 0.0
+
+
+@kernel
+def image_directions_kernel(
+    points: Array,
+    pairs: Ints,
+    shares: Array,
+    normals: Array,
+    rotation: Array,
+    shift: Array,
+    lens: Array,
+    directions: Array,
+) -> None:
+    """Write the world direction whose component moves a pixel along a normal, in px/m.
+
+    Parameters
+    ----------
+    points : (n_vertices, 3) m
+    pairs, shares : (n, 2), (n,)
+        As in `jacobian_kernel`.
+    normals : (n, 2)
+        Unit vectors in the image.
+    rotation, shift, lens
+        ``camera_from_world``, and fx, fy, cx, cy in px.
+    directions : (n, 3)
+        Written.
+    """
+    seen = np.empty(3)
+    for i in range(len(pairs)):
+        a, b, t = pairs[i, 0], pairs[i, 1], shares[i]
+        for k in range(3):
+            seen[k] = shift[k]
+            for j in range(3):
+                seen[k] += rotation[k, j] * ((1.0 - t) * points[a, j] + t * points[b, j])
+        depth = seen[2]
+        x, y = normals[i, 0] * lens[0] / depth, normals[i, 1] * lens[1] / depth
+        z = -(x * seen[0] + y * seen[1]) / depth
+        for j in range(3):
+            directions[i, j] = x * rotation[0, j] + y * rotation[1, j] + z * rotation[2, j]

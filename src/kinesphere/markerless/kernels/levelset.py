@@ -8,18 +8,18 @@ from kinesphere.kernels.jit import kernel
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 Phi = NDArray[np.float32]
-
-_MOST = 6.0  # nats; a pixel's say is cut there, as both densities are guesses
+Runs = NDArray[np.int32]
 
 
 @kernel
-def region_counts_kernel(features: Image, phi: Phi, counts: Array) -> None:
-    """Count the feature values inside (Φ > 0) and outside.
+def region_counts_kernel(features: Image, inside: NDArray[np.bool_], counts: Array) -> None:
+    """Count the feature values inside and outside.
 
     Parameters
     ----------
     features : (height, width, n_features)
-    phi : (height, width)
+    inside : (height, width)
+        Where Φ > 0.
     counts : (2, n_features, 256)
         Inside, outside. Written.
     """
@@ -27,124 +27,60 @@ def region_counts_kernel(features: Image, phi: Phi, counts: Array) -> None:
     height, width, n = features.shape
     for row in range(height):
         for col in range(width):
-            side = 0 if phi[row, col] > 0 else 1
+            side = 0 if inside[row, col] else 1
             for k in range(n):
                 counts[side, k, features[row, col, k]] += 1.0
 
 
 @kernel
-def ratios_kernel(features: Image, phi: Phi, ratios: Array, band: float, force: Phi) -> None:
+def recount_kernel(
+    features: Image, phi: Phi, runs: Runs, inside: NDArray[np.bool_], counts: Array
+) -> None:
+    """Bring counts up to date where the contour has passed over pixels.
+
+    Parameters
+    ----------
+    features, counts
+        As in `region_counts_kernel`; counts are changed.
+    phi : (height, width)
+    runs : (n_runs, 3)
+        The band in which Φ may have changed, as `band_runs_kernel` gives it.
+    inside : (height, width)
+        What has been counted as inside. Changed.
+    """
+    for k in range(len(runs)):
+        row = runs[k, 0]
+        for col in range(runs[k, 1], runs[k, 2]):
+            now = phi[row, col] > 0
+            if now != inside[row, col]:
+                inside[row, col] = now
+                side = 0 if now else 1
+                for f in range(features.shape[2]):
+                    counts[side, f, features[row, col, f]] += 1.0
+                    counts[1 - side, f, features[row, col, f]] -= 1.0
+
+
+@kernel
+def ratios_kernel(features: Image, runs: Runs, ratios: Array, force: Phi) -> None:
     """Write how much likelier each pixel near the contour is the person's, in nats.
 
     Parameters
     ----------
-    features, phi
-        As in `region_counts_kernel`.
+    features, runs
+        As in `recount_kernel`.
     ratios : (n_features, 256)
         log p₁/p₂ of each value of each feature; features count as independent.
-    band
-        px to either side of the contour.
     force : (height, width)
         Written within the band.
     """
-    height, width, n = features.shape
-    for row in range(height):
-        for col in range(width):
-            if abs(phi[row, col]) < band:
-                ratio = 0.0
-                for k in range(n):
-                    ratio += ratios[k, features[row, col, k]]
-                force[row, col] = ratio
-
-
-@kernel
-def evolve_kernel(
-    phi: Phi,
-    force: Phi,
-    length: float,
-    shape: float,
-    prior: Phi,
-    inside_delta: bool,
-    width_px: float,
-    band: float,
-    rate: float,
-    steps: int,
-) -> float:
-    """Move Φ by ``steps`` of gradient descent in a narrow band about its zero level.
-
-    Equation 2; with ``shape`` > 0 equation 4, whose last term is by the energy's own derivative
-    outside H'(Φ)(…), and inside it as printed where ``inside_delta`` is set.
-
-    Parameters
-    ----------
-    phi : (height, width) px
-        Positive inside. Changed.
-    force : (height, width)
-        log p₁/p₂ of each pixel of the band.
-    length
-        ν, weight of the contour's length.
-    shape
-        λ, in 1/px: weight of staying near ``prior``, Φ₀ of the projected surface.
-    width_px
-        Standard deviation of H', in px.
-    band
-        px to either side of the contour.
-    rate
-        Time step.
-    steps
-
-    Returns
-    -------
-    float
-        Mean change of Φ in the last step, in px, over the band.
-    """
-    height, width = phi.shape
-    count = 0
-    for row in range(1, height - 1):
-        for col in range(1, width - 1):
-            if abs(phi[row, col]) < band:
-                count += 1
-    where = np.empty((count, 2), dtype=np.int32)
-    pull = np.empty(count)
-    at = 0
-    for row in range(1, height - 1):
-        for col in range(1, width - 1):
-            if abs(phi[row, col]) < band:
-                where[at, 0] = row
-                where[at, 1] = col
-                pull[at] = min(max(force[row, col], -_MOST), _MOST)
-                at += 1
-    change = np.empty(count)
-    delta_0 = 1.0 / (width_px * np.sqrt(2.0 * np.pi))
-    moved = 0.0
-    for _ in range(steps):
-        moved = 0.0
-        for i in range(count):
-            row, col = where[i, 0], where[i, 1]
-            c = phi[row, col]
-            left, right = phi[row, col - 1], phi[row, col + 1]
-            up, down = phi[row - 1, col], phi[row + 1, col]
-            px, py = 0.5 * (right - left), 0.5 * (down - up)
-            pxx, pyy = right - 2 * c + left, down - 2 * c + up
-            pxy = 0.25 * (
-                phi[row + 1, col + 1]
-                - phi[row + 1, col - 1]
-                - phi[row - 1, col + 1]
-                + phi[row - 1, col - 1]
-            )
-            slope = px * px + py * py + 1e-6
-            curvature = (pxx * py * py - 2 * px * py * pxy + pyy * px * px) / slope**1.5
-            curvature = min(max(curvature, -1.0), 1.0)
-            delta = delta_0 * np.exp(-0.5 * (c / width_px) ** 2)
-            to_prior = 2.0 * shape * (prior[row, col] - c)
-            if inside_delta:
-                change[i] = rate * delta * (pull[i] + length * curvature + to_prior)
-            else:
-                change[i] = rate * (delta * (pull[i] + length * curvature) + to_prior)
-        for i in range(count):
-            phi[where[i, 0], where[i, 1]] += change[i]
-            moved += abs(change[i])
-    return moved / max(count, 1)
+    n = features.shape[2]
+    for i in range(len(runs)):
+        row = runs[i, 0]
+        for col in range(runs[i, 1], runs[i, 2]):
+            ratio = 0.0
+            for k in range(n):
+                ratio += ratios[k, features[row, col, k]]
+            force[row, col] = ratio
 
 
 @kernel

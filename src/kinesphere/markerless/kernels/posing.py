@@ -10,7 +10,7 @@ Indices = NDArray[np.intp]
 
 
 @kernel
-def _about(axis: Array, angle: float) -> Array:
+def about(axis: Array, angle: float) -> Array:
     """Return the rotation about a unit axis (Rosenhahn et al. 2006, equation 9)."""
     s, c = np.sin(angle), 1.0 - np.cos(angle)
     x, y, z = axis[0], axis[1], axis[2]
@@ -25,7 +25,8 @@ def _about(axis: Array, angle: float) -> Array:
 
 
 @kernel
-def _times(a: Array, b: Array) -> Array:
+def times(a: Array, b: Array) -> Array:
+    """Return the product of two matrices, (3, 3)."""
     product = np.empty((3, 3))
     for i in range(3):
         for j in range(3):
@@ -82,9 +83,9 @@ def pose_kernel(
                 for j in range(3):
                     axes[k, i] += turn[i, j] * dof_axes[k, j]
             if dof_kinds[k] == 2:
-                turn = _times(turn, _about(dof_axes[k], angles[k]))
+                turn = times(turn, about(dof_axes[k], angles[k]))
             k += 1
-        rotations[limb] = _times(turn, balls[limb])
+        rotations[limb] = times(turn, balls[limb])
 
 
 @kernel
