@@ -48,9 +48,7 @@ class Account:
         """How many frames there are so far."""
         return int(self._entered.sum())
 
-    def enter(
-        self, frame: Frame, found: Found, seconds: float, *, unmasked: bool = False
-    ) -> None:
+    def enter(self, frame: Frame, found: Found, seconds: float, *, unmasked: bool = False) -> None:
         """Take down one frame; one in which no camera saw anything, or nobody, stays empty.
 
         ``unmasked`` if it was followed by colours in a scene that is followed by masks.
