@@ -22,7 +22,7 @@ from kinesphere.markerless.following import Following
 from kinesphere.markerless.pose import Pose
 from kinesphere.markerless.rehearsal import rehearse
 from kinesphere.markerless.settings import TrackSettings
-from kinesphere.markerless.shape import FACTORS, shaped
+from kinesphere.markerless.shape import found_shape, shaped
 from kinesphere.markerless.shape_fit import fit_shape
 from kinesphere.markerless.sizes import with_best_size
 from kinesphere.markerless.tracked import TrackedMotion
@@ -131,7 +131,7 @@ def track(
         "track",
         settings={"model": scene.body.model, "start": start.how, **settings_as_json(settings)},
         findings={
-            "factors": {k: float(v) for k, v in zip(FACTORS, np.exp(logs), strict=True)},
+            **found_shape(logs),
             "start_overlap": None if np.isnan(start.overlap) else float(start.overlap),
         },
         warnings=(*start.warnings, *account.warnings()),
