@@ -23,8 +23,8 @@ def page(films: Sequence[Outcome], real: Sequence[RealOutcome]) -> str:
         "shape is not known yet; the others are found from the images, from images of the empty "
         "room (*plates*), or from *masks* of the first frame alone. In clutter masks are needed: "
         "where things move and the light changes, plates of it tell too little. Of push-ups, whose "
-        "arms and legs touch the floor, plates are enough. *Partly hidden*: a post stands before two of "
-        "the cameras. *Another mesh*: a person of another sex, weight and build, whose bones are "
+        "arms and legs touch the floor, plates are enough. *Partly hidden*: posts stand before two "
+        "of the cameras. *Another mesh*: a person of another sex, weight and build, their bones "
         "stretched besides. *Astray*: frames in which a "
         f"joint is more than {ASTRAY * 1e3:.0f} mm from the truth. Of several seeds the worst is "
         "shown. Limits stand in brackets; where there are any, no frame may be astray or unsolved.",

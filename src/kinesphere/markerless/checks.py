@@ -52,8 +52,8 @@ def check_scene(scene: Scene) -> Step:
     doubts = []
     if twins := same_pictures(scene.cameras, scene.frame(scene.start.frame)):
         doubts.append(
-            f"{twins[0]} and {twins[1]} show the same picture, to the last pixel; each camera needs "
-            "images of its own"
+            f"{twins[0]} and {twins[1]} show the same picture, to the last pixel; each camera "
+            "needs images of its own"
         )
     spread = np.linspace(0, scene.n_frames - 1, _FRAMES).astype(int)
     able = sum(p is not None for p in scene.plates) if not scene.has_masks else len(scene.cameras)
