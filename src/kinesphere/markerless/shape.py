@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinesphere.data import Array
+from kinesphere.data import Array, Json
 from kinesphere.data.surface import Surface
 from kinesphere.errors import BadSetting
 
@@ -85,7 +85,7 @@ def shaped(surface: Surface, logs: Mapping[str, float] | Array) -> Surface:
     return replace(surface, vertices=vertices, joint_centres=moved, ends=new_ends)
 
 
-def found_shape(logs: Array) -> dict[str, dict[str, float]]:
+def found_shape(logs: Array) -> dict[str, Json]:
     """Return logarithms of ``FACTORS`` as factors, and as steps along directions of shape."""
     named = {name: float(log) for name, log in zip(FACTORS, logs, strict=True)}
     return {

@@ -10,8 +10,8 @@ from kinesphere.data import Array, Camera
 
 _AWAY = 1.25
 """m from the middle of the room, towards the camera: out of reach of arms and legs."""
-_ASIDE = 0.3
-"""m, how far beside the line of sight to the middle at most: where an arm is seen."""
+_ASIDE = 0.15
+"""m, how far beside the line of sight to the middle at most: trunk or arms lie behind."""
 _POST = (0.12, 2.4, 0.12)
 """m, width, height and depth."""
 

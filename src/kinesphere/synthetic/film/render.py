@@ -112,16 +112,13 @@ class RenderedFootage:
         there, things = len(skin) > 0, self._furniture
         own = self.motion.surface
         faces = self.faces if there else self.faces[:0]
-        parts = [
-            (pixels, camera.project(things.vertices)),
-            (depths, camera.depths(things.vertices)),
-            (faces, things.faces + len(skin)),
-            (own.normals(skin) if there else skin, things.normals),
-            (own.vertices if there else skin, things.vertices),
-            (self.clothes.colours[: len(skin)] * 1.15, things.colours),
-            (self.clothes.patterned[: len(skin)], np.zeros(len(things.vertices))),
-        ]
-        pixels, depths, faces, normals, rest, colours, patterned = map(np.concatenate, parts)
+        pixels = np.concatenate([pixels, camera.project(things.vertices)])
+        depths = np.concatenate([depths, camera.depths(things.vertices)])
+        faces = np.concatenate([faces, things.faces + len(skin)])
+        normals = np.concatenate([own.normals(skin) if there else skin, things.normals])
+        rest = np.concatenate([own.vertices if there else skin, things.vertices])
+        colours = np.concatenate([self.clothes.colours[: len(skin)] * 1.15, things.colours])
+        patterned = np.append(self.clothes.patterned[: len(skin)], np.zeros(len(things.vertices)))
         # a pixel's samples lie around its centre: pixel p is at finer · p + (finer − 1) / 2
         finer = self.conditions.finer
         fine = pixels * finer + (finer - 1) / 2
