@@ -106,9 +106,9 @@ def carried(chain: Chain, sums: Array) -> Array:
     """Return sums over what was seen of each limb, (n_limbs,), a hand's with its forearm's.
 
     A hand is where its forearm ends, whatever the wrist does, so it is lost where both are. By
-    itself it is too small to tell: a fist where the model spreads its fingers, or a hand blurred by
-    its own motion, was held lost in 17 of 95 frames of real footage in which it is plainly there;
-    arms put wrong are noticed as surely either way.
+    itself it is too small to tell: in 8 to 17 % of the frames of real footage a fist where the
+    model spreads its fingers, or a hand blurred by its motion, was held lost. Arms put wrong are
+    noticed nearly as surely.
     """
     out = sums.copy()
     names = chain.limb_names
