@@ -1,8 +1,10 @@
 """Scenes of the real recordings: SCENE.toml files written beside nothing of theirs.
 
     python -m benchmarks.markerless.real_scenes FOLDER
+    kinesphere track FOLDER/pose2sim/SCENE.toml -o OUT
 
-The recordings stay where they are (KINESPHERE_DATA); the scenes name them by their full paths.
+They are those of the benchmark. The recordings stay where they are (KINESPHERE_DATA); the scenes
+name them by their full paths.
 """
 
 import json
@@ -13,7 +15,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.markerless.alignment import pixel_map
+from kinesphere.io.scene import read_scene
+from kinesphere.markerless.alignment import aligned, pixel_map
+from kinesphere.markerless.checks import silhouettes
 
 DATA = Path(os.environ.get("KINESPHERE_DATA", "../shared/data"))
 _CROPPED = {"cam01", "cam02"}
@@ -103,6 +107,18 @@ def write_parsec_scene(
     return _written(folder, lines)
 
 
+def write_mended_parsec_scene(folder: Path, data: Path = DATA) -> Path:
+    """Write the scene of that instant, its calibration mended as the check before tracking advises.
+
+    The cameras were moved by up to 8 px after they had been calibrated; what the check says of it
+    is written into the scene, as a user would.
+    """
+    path = write_parsec_scene(folder, data)
+    scene = read_scene(path)
+    found = aligned(scene.cameras, [silhouettes(scene, scene.frame(0))])
+    return path if found is None else write_parsec_scene(folder, data, shifts=found.shifts)
+
+
 PARSEC_UP = "+z"
 
 
@@ -115,5 +131,5 @@ def _written(folder: Path, lines: list[str]) -> Path:
 
 if __name__ == "__main__":
     where = Path(sys.argv[1] if len(sys.argv) > 1 else "scenes")
-    print(write_pose2sim_scene(where / "pose2sim"))
-    print(write_parsec_scene(where / "parsec"))
+    print(write_pose2sim_scene(where / "pose2sim", masks=True))
+    print(write_mended_parsec_scene(where / "parsec"))

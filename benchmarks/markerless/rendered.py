@@ -7,7 +7,7 @@ import numpy as np
 
 from benchmarks.markerless.given_start import disturbed_start
 from benchmarks.markerless.measures import Errors, errors_of
-from kinesphere.data import BodyChoice, Footage, Frame, bundled_body
+from kinesphere.data import BodyChoice, Footage, Frame, Surface, bundled_body
 from kinesphere.errors import KinesphereError
 from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.tracker import track
@@ -28,6 +28,9 @@ class Case:
     n_cameras: int = 4
     other: bool = False
     """A person built 3 to 8 % unlike the model, whose shape is fitted; else the true shape."""
+    mesh: bool = False
+    """Whether that person is made from another body than the model, too: of the other sex, or more
+    so of the same, of other weight, muscles and build."""
     masks: bool = False
     given: bool = False
     """Whether the first pose is given but for 2° and 8 mm; else it is found."""
@@ -63,6 +66,36 @@ CASES = (
         "push-ups",
         other=True,
         by="plates",
+        mean=1.7,
+        rms=2.3,
+        joints=10,
+    ),
+    Case(
+        "arms, another mesh, shape fitted",
+        "arms",
+        other=True,
+        mesh=True,
+        seeds=(1, 2, 3),
+        mean=1.7,
+        rms=2.3,
+        joints=10,
+    ),
+    Case(
+        "arms, partly hidden, shape fitted",
+        "arms",
+        "hidden",
+        other=True,
+        given=True,
+        mean=1.7,
+        rms=2.3,
+        joints=10,
+    ),
+    Case(
+        "push-ups, partly hidden, shape fitted",
+        "push-ups",
+        "hidden",
+        other=True,
+        given=True,
         mean=1.7,
         rms=2.3,
         joints=10,
@@ -141,6 +174,13 @@ class Outcome:
         )
 
 
+def another_mesh(model: Surface, seed: int) -> Surface:
+    """Return a body with the model's joints but another skin, and joints elsewhere below it."""
+    rng = np.random.default_rng([seed, 78])
+    build = {name: float(rng.uniform(-1, 1)) for name in ("weight", "muscle", "proportions")}
+    return model.shaped({"sex": float(rng.choice([-1.0, 1.0])), **build})
+
+
 @dataclass(frozen=True, eq=False)
 class MasksOnce:
     """Footage of which somebody has masked the first frame, and no other."""
@@ -168,7 +208,9 @@ def outcomes(
 
 def _outcome(case: Case, seed: int, n_frames: int) -> Outcome:
     model = bundled_body()
-    person = another_person(model, np.random.default_rng([seed, 77])) if case.other else model
+    person = another_mesh(model, seed) if case.mesh else model
+    if case.other:
+        person = another_person(person, np.random.default_rng([seed, 77]))
     film = make_film(
         seed,
         case.movement,

@@ -63,6 +63,18 @@ def test_the_page_shows_the_worst_seed_and_what_was_missed(film, tracked_film):
     assert "the person was not found" in page([lost], [])
 
 
+def test_wrists_count_where_the_folder_has_them():
+    near = RealOutcome(
+        NAMES[0], overlap=0.9, overlap_wanted=0.8, wrists_near=0.99, wrists_wanted=0.95
+    )
+    assert near.missed  # whether hands are held lost is not known
+    assert replace(near, wrists_found=0.91).missed
+    assert not replace(near, wrists_found=0.96).missed
+    text = page([], [replace(near, wrists_found=0.91)])
+    assert "| 99 % | 91 % (95 %) |" in text
+    assert "masks of one frame" in text
+
+
 def test_one_case_measured_anew_leaves_the_others(film, tracked_film, tmp_path):
     good = errors_of(tracked_film(film), film)
     path = tmp_path / "kept.json"

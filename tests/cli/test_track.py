@@ -1,6 +1,7 @@
 """``kinesphere track`` as a person would run it, on a small film with its masks."""
 
 import json
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -68,10 +69,10 @@ def test_interrupted_it_keeps_what_was_solved(call, scene, tmp_path, monkeypatch
 
     enter = Account.enter
 
-    def three_at_most(account, frame, found, seconds):
+    def three_at_most(account, *args, **kwargs):
         if account.n_entered == 3:
             raise KeyboardInterrupt
-        enter(account, frame, found, seconds)
+        enter(account, *args, **kwargs)
 
     monkeypatch.setattr(Account, "enter", three_at_most)
     out = tmp_path / "out"
@@ -97,6 +98,50 @@ def test_who_will_not_wait_for_the_video_keeps_the_rest(call, scene, tmp_path, m
     assert call("track", scene, "-o", out).code == 0
     assert read_solution(out).motion.n_frames == 5
     assert not (out / "overlays.mp4").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("stage", ["normalization", "parameterization", "surface", "strip"])
+def test_interrupted_after_tracking_only_the_video_is_left_out(
+    call, scene, tmp_path, monkeypatch, stage, number
+):
+    from kinesphere.pipeline import track as line
+    from kinesphere.report import strip
+
+    place, name = {
+        "normalization": (line, "normalized_at_any_rate"),
+        "parameterization": (line, "parameterized_at_any_rate"),
+        "surface": (line, "surface_for"),
+        "strip": (strip, "overlay_strip"),
+    }[stage]
+    work, before = getattr(place, name), signal.getsignal(number)
+
+    def interrupted(*args, **kwargs):
+        signal.raise_signal(number)
+        return work(*args, **kwargs)
+
+    monkeypatch.setattr(place, name, interrupted)
+    out = tmp_path / "out"
+    shown = call("track", scene, "-o", out, "--set", "tracking.shape_rounds=0")
+    assert shown.code == 0, shown.err
+    assert "interrupted: what was tracked is being written first" in shown.err + shown.out
+    assert read_solution(out).motion.n_frames == 5
+    assert (out / "overlays.jpg").exists()
+    assert not (out / "overlays.mp4").exists()
+    assert signal.getsignal(number) is before
+
+
+def test_who_insists_is_obeyed_after_tracking(call, scene, tmp_path, monkeypatch):
+    from kinesphere.pipeline import track as line
+
+    def twice(*_args, **_kwargs):
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(line, "surface_for", twice)
+    shown = call("track", scene, "-o", tmp_path / "out", "--set", "tracking.shape_rounds=0")
+    assert shown.code != 0
+    assert not (tmp_path / "out").exists()
 
 
 def test_what_cannot_be_meant_is_said_before_tracking(call, scene, tmp_path, monkeypatch):

@@ -148,6 +148,55 @@ def test_a_wrong_calibration_is_named(film):
     assert any("cam01 does not fit the others" in warning for warning in warnings)
 
 
+@pytest.mark.parametrize("degrees", [0.7, 3.0])
+def test_of_perfect_cameras_one_that_is_off_is_named_alone(film, degrees):
+    """However little: what the others say leaves no doubt which it is."""
+    cameras = list(film.scene.cameras)
+    cameras[1] = turned(cameras[1], degrees)
+    warnings = check_scene(replace(film.scene, cameras=tuple(cameras))).warnings
+    assert any("cam02 does not fit the others" in warning for warning in warnings)
+    assert not any(name in w for w in warnings for name in ("cam01", "cam03", "cam04"))
+
+
+@pytest.mark.parametrize(
+    "way", [np.eye(3), Rotation.from_euler("x", -90, degrees=True).as_matrix()]
+)
+def test_a_calibration_from_camera_to_world_is_recognised(film, way):
+    cameras = [
+        replace(
+            c,
+            rotation=(c.rotation @ way).T @ way.T,
+            translation=-(c.rotation @ way).T @ c.translation,
+        )
+        for c in film.scene.cameras
+    ]
+    wrong = replace(film.scene, cameras=tuple(cameras), world_from_file=way)
+    (warning,) = check_scene(wrong).warnings
+    assert "seems to be camera-to-world" in warning
+
+
+def test_an_offset_beyond_the_usual_is_looked_for(film):
+    long = make_film(3, "arms", size=SIZE, n_frames=40, masks=True)
+    footage = replace(long.footage, with_images=False)
+    scene = replace(long.scene, footage=Late(footage, 1, 10))
+    scene = replace(scene, start=replace(scene.start, frame=10))
+    (warning,) = check_scene(scene).warnings
+    assert "offset = 10 in the [[camera]] of cam02" in warning
+
+
+def test_one_video_for_two_cameras_is_doubted(film):
+    @dataclass(frozen=True)
+    class Twice:
+        def frames(self, start, stop, step=1):
+            rng = np.random.default_rng(3)
+            for frame in film.scene.footage.frames(start, stop, step):
+                a, b, c = rng.integers(0, 255, (3, 4, 5, 3), dtype=np.uint8)
+                yield replace(frame, images=(a, b, c, b))
+
+    warnings = check_scene(replace(film.scene, footage=Twice())).warnings
+    assert warnings[0].startswith("cam02 and cam04 show the same picture")
+
+
 @pytest.mark.parametrize(("one", "other"), list(combinations(range(4), 2)))
 def test_exchanged_cameras_are_named(film, one, other):
     """Opposite ones, too, whose silhouettes are nearly each other's mirror image."""

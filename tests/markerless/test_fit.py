@@ -185,3 +185,35 @@ def test_proportions_are_found_from_a_few_instants(ring):
         ]
         assert abs(lengths[0] - lengths[1]) < 8e-3
         assert abs(lengths[0] - lengths[1]) < 0.5 * abs(lengths[2] - lengths[1]) + 4e-3
+
+
+@pytest.mark.parametrize(("directions", "near"), [(True, 0.004), (False, 0.03)])
+def test_joints_of_another_mesh_are_found_by_its_directions_of_shape(ring, directions, near):
+    """Factors alone leave them where they lie below the model's own skin."""
+    surface, cameras = bundled_body(), ring(4)
+    true_body = full_body(surface.shaped({"sex": -1.0, "proportions": 0.5}))
+    model = surface if directions else replace(surface, shapes=())
+    fitter = fitter_for(full_body(model), cameras, TrackSettings(), masks=True)
+    instants = []
+    for seed in range(4):
+        pose = a_pose(true_body, seed, spread=0.12)
+        masks = tuple(masks_of(true_body, pose, cameras))
+        for eye, mask in zip(fitter.eyes, masks, strict=True):
+            eye.evidence.look(mask)
+        start = fitter.fit(pose, (expectation(fitter.body.chain, pose, SETTINGS),))
+        instants.append(Instant(masks, start))
+    logs = np.zeros(len(FACTORS))
+    for _ in range(2):
+        logs, poses = fit_shape(fitter, model, full_body, logs, instants)
+        instants = [replace(i, pose=p) for i, p in zip(instants, poses, strict=True)]
+    found = full_body(shaped(model, logs)).chain
+    apart = [
+        np.linalg.norm(
+            posed(found, poses[k]).centres
+            - posed(true_body.chain, a_pose(true_body, k, spread=0.12)).centres,
+            axis=1,
+        ).mean()
+        for k in range(4)
+    ]
+    assert np.mean(apart) < near
+    assert directions or np.mean(apart) > 0.008

@@ -1,12 +1,14 @@
 """Proportions: laws of the factors."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from kinesphere.data import bundled_body
 from kinesphere.errors import BadSetting
-from kinesphere.markerless.shape import FACTORS, shaped
+from kinesphere.markerless.shape import FACTORS, found_shape, shaped
 
 S = bundled_body()
 
@@ -44,6 +46,19 @@ def test_a_length_changes_its_bone_and_no_other(factor, limb, to):
     for other, end in (("left_upper_arm", "left_forearm"), ("left_thigh", "left_shank")):
         if not factor.startswith(other.removeprefix("left_")):
             assert length(longer, other, end) == pytest.approx(length(S, other, end))
+
+
+def test_directions_of_shape_are_the_surfaces_own(rng):
+    logs = {"sex": -0.1, "weight": 0.05, "size": 0.03}
+    expected = shaped(S.shaped({"sex": -1.0, "weight": 0.5}), {"size": 0.03})
+    found = shaped(S, logs)
+    assert_allclose(found.vertices, expected.vertices, atol=1e-12)
+    assert_allclose(found.joint_centres, expected.joint_centres, atol=1e-12)
+    bare = replace(S, shapes=())
+    assert_allclose(shaped(bare, logs).vertices, shaped(S, {"size": 0.03}).vertices, atol=1e-12)
+    told = found_shape(np.array([logs.get(name, 0.0) for name in FACTORS]))
+    assert told["factors"]["size"] == np.exp(0.03)
+    assert told["shape_steps"] == {"sex": -1.0, "proportions": 0.0, "weight": 0.5, "muscle": 0.0}
 
 
 def test_girth_changes_no_bone():

@@ -218,6 +218,16 @@ def test_masks_of_one_frame_serve_the_start_only(film, shots):
     assert not masks_throughout(scene_of(film, shots, has_masks=False), 0)
 
 
+def test_where_masks_end_or_are_missing_colours_go_on(film, shots):
+    masked = (0, 1, 2, 6, 7)
+    some = tuple(replace(s, masks=s.references) if s.index in masked else s for s in shots)
+    tracked = track(scene_of(film, some), bundled_body(), QUICK)
+    assert tracked.solved.all()
+    assert errors(tracked, film).mean(axis=1).max() < 0.012
+    said = "no camera has a mask in frames 4–6 and 9–10: followed by colours there"
+    assert said in tracked.history[-1].warnings
+
+
 def test_plates_serve_the_start(film, shots):
     bare = (replace(shots[0], masks=(None,) * 4), *shots[1:3])
     scene = scene_of(film, bare, has_masks=False, plates=film.scene.plates, body=BodyChoice())

@@ -1,13 +1,12 @@
 """``kinesphere track``: cameras and images in, the usual solved folder out."""
 
-import signal
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from kinesphere.cli.interruptions import Interruptions, interruptions
 from kinesphere.cli.options import (
     BadArgument,
     JsonOption,
@@ -94,7 +93,7 @@ def track(
 
     settings = settings_from_options(assignments, settings_file)
     check_solution_place(output, [REPORT, STRIP, VIDEO, TABLE])
-    with progress_bar(quiet=as_json) as progress, stopped_as_by_hand():
+    with progress_bar(quiet=as_json) as progress, interruptions(progress.say) as stops:
         scene = read_scene(file)
         found = solve_scene(
             scene,
@@ -104,8 +103,9 @@ def track(
             settings=settings,
             progress=progress,
             notice=progress.say,
+            after_tracking=stops.finish_first,
         )
-        report = write_tracked(found, output, video=video, progress=progress)
+        report = write_tracked(found, output, stops, video=video, progress=progress)
     solution = found.solution
     summary = {
         "file": str(file),
@@ -125,20 +125,18 @@ def track(
         )
 
 
-@contextmanager
-def stopped_as_by_hand() -> Iterator[None]:
-    """Let a request to terminate, as a cluster sends it, do what Ctrl-C does."""
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
-
-
 def write_tracked(
-    found: "TrackedSolution", output: Path, *, video: bool = True, progress: Any = None
+    found: "TrackedSolution",
+    output: Path,
+    stops: Interruptions,
+    *,
+    video: bool = True,
+    progress: Any = None,
 ) -> Path:
-    """Write the solved folder with pictures, table and report; return where the report is."""
+    """Write the solved folder with pictures, table and report; return where the report is.
+
+    An interruption leaves out the video, which takes long, and nothing else.
+    """
     from kinesphere.cli.files import REPORT
     from kinesphere.io import write_solution
     from kinesphere.io.images import encoded_image
@@ -153,10 +151,12 @@ def write_tracked(
         TABLE: tracking_table(found.scene, found.tracked),
     }
     poster = b""
-    if video:
+    if video and not stops.asked:
         with suppress(KeyboardInterrupt):  # who will not wait for it keeps the rest
+            stops.at_once()
             files[VIDEO], first = overlay_film(found.scene, found.tracked, progress)
             poster = encoded_image(first)
+        stops.finish_first()
     section = tracking_section(
         found.scene,
         found.tracked,

@@ -24,7 +24,7 @@ class Account:
 
     scene: Scene
     fitter: Fitter
-    masks: bool
+    """What found the last pose."""
     seconds: dict[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -39,6 +39,7 @@ class Account:
         self._lost = np.zeros((n, limbs), dtype=bool)
         self._entered = np.zeros(n, dtype=bool)
         self._absent = np.zeros(n, dtype=bool)
+        self._unmasked = np.zeros(n, dtype=bool)
         names = body.chain.limb_names
         self._own = [names.index(name) for name in body.house_limbs]
 
@@ -47,9 +48,13 @@ class Account:
         """How many frames there are so far."""
         return int(self._entered.sum())
 
-    def enter(self, frame: Frame, found: Found, seconds: float) -> None:
-        """Take down one frame; one in which no camera saw anything, or nobody, stays empty."""
+    def enter(self, frame: Frame, found: Found, seconds: float, *, unmasked: bool = False) -> None:
+        """Take down one frame; one in which no camera saw anything, or nobody, stays empty.
+
+        ``unmasked`` if it was followed by colours in a scene that is followed by masks.
+        """
         self._entered[frame.index] = True
+        self._unmasked[frame.index] = unmasked
         self.seconds["tracking"] = self.seconds.get("tracking", 0.0) + seconds
         if not self.fitter.open_eyes:
             return
@@ -98,6 +103,10 @@ class Account:
             said.append(f"no camera has an image in {self._called(blind)}: no pose there")
         if self._absent.any():
             said.append(f"nobody is seen in {self._called(self._absent)}: no pose there")
+        if self._unmasked.any():
+            said.append(
+                f"no camera has a mask in {self._called(self._unmasked)}: followed by colours there"
+            )
         shares = self._lost[solved].mean(axis=0)
         lost = [
             f"{name} {share:.0%}"

@@ -57,13 +57,19 @@ class _Seen:
     diagonal: float
 
 
-def aligned(cameras: Sequence[Camera], frames: Sequence[Sequence[Mask | None]]) -> Alignment | None:
+def aligned(
+    cameras: Sequence[Camera],
+    frames: Sequence[Sequence[Mask | None]],
+    only: int | None = None,
+) -> Alignment | None:
     """Return the shifts of cameras with which silhouettes agree best.
 
     Parameters
     ----------
     frames
         Silhouettes, (height, width), one a camera; None where there is none.
+    only
+        The camera that may have been moved; any, if None.
 
     Returns
     -------
@@ -76,7 +82,7 @@ def aligned(cameras: Sequence[Camera], frames: Sequence[Sequence[Mask | None]]) 
     shifts = np.zeros((len(cameras), 2))
     before = best = _filled(instants, shifts)
     for step in _STEPS:
-        for camera in {c for seen in instants for c in seen}:
+        for camera in {c for seen in instants for c in seen if only in (None, c)}:
             diagonal = float(np.hypot(cameras[camera].width, cameras[camera].height))
             for axis in (0, 1):
                 tried = []
@@ -90,9 +96,13 @@ def aligned(cameras: Sequence[Camera], frames: Sequence[Sequence[Mask | None]]) 
     return Alignment(shifts, best, before)
 
 
-def moved_cameras(cameras: Sequence[Camera], frames: Sequence[Sequence[Mask | None]]) -> list[str]:
+def moved_cameras(
+    cameras: Sequence[Camera],
+    frames: Sequence[Sequence[Mask | None]],
+    only: int | None = None,
+) -> list[str]:
     """Return a word for each camera that seems to have been moved, with the line that mends it."""
-    found = aligned(cameras, frames)
+    found = aligned(cameras, frames, only)
     if found is None or found.filled - found.filled_before < _CLEARLY:
         return []
     return [

@@ -1,12 +1,12 @@
-"""Cameras whose images were mixed up, and a person of a size nobody has."""
+"""Cameras whose images or places were mixed up, and a person of a size nobody has."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
-from kinesphere.data import Camera, Mask
+from kinesphere.data import Array, Camera, Frame, Mask
 from kinesphere.markerless.consistency import cost, distances, middle_of, sights
 
 _FEW = 4
@@ -47,6 +47,30 @@ def find_swap(cameras: Sequence[Camera], frames: Sequence[tuple[Mask | None, ...
     first, second = min(pairs, key=lambda pair: _cost(cameras, few, pair))
     before, after = _cost(cameras, frames), _cost(cameras, frames, (first, second))
     return Swap(first, second, 1 - after / before) if after < before else None
+
+
+def same_pictures(cameras: Sequence[Camera], frame: Frame) -> tuple[str, str] | None:
+    """Return the names of two cameras whose images are the same to the last pixel, if any are."""
+    shown = [(c.name, p) for c, p in zip(cameras, frame.images, strict=True) if p is not None]
+    for (one, a), (other, b) in combinations(shown, 2):
+        if np.array_equal(a, b):
+            return one, other
+    return None
+
+
+def turned_inside_out(cameras: Sequence[Camera], world_from_file: Array) -> tuple[Camera, ...]:
+    """Return the cameras that are meant if a calibration has camera-to-world turns and places."""
+    out = []
+    for camera in cameras:
+        world_from_camera = (camera.rotation @ world_from_file).T
+        out.append(
+            replace(
+                camera,
+                rotation=world_from_camera @ world_from_file.T,
+                translation=-world_from_camera @ camera.translation,
+            )
+        )
+    return tuple(out)
 
 
 def person_size(cameras: Sequence[Camera], frames: Sequence[tuple[Mask | None, ...]]) -> float:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinesphere.data import Array
+from kinesphere.data import Array, Json
 from kinesphere.data.surface import Surface
 from kinesphere.errors import BadSetting
 
@@ -24,8 +24,18 @@ FACTORS: Mapping[str, float] = {
     "leg_girth": 0.10,
     "foot_size": 0.06,
     "head_size": 0.06,
+    "sex": 0.10,
+    "proportions": 0.10,
+    "weight": 0.10,
+    "muscle": 0.10,
 }
-"""Factor → how much its logarithm varies between people (standard deviation), about."""
+"""Factor → how much its logarithm varies between people (standard deviation), about.
+
+The last four are no factors but tenths of a step along the surface's directions of shape, where it
+has them: what varies together from body to body, as shoulders and hips do, and where joints lie
+below the skin."""
+DIRECTIONS = ("sex", "proportions", "weight", "muscle")
+_TENTHS = 10.0
 
 
 def shaped(surface: Surface, logs: Mapping[str, float] | Array) -> Surface:
@@ -39,7 +49,8 @@ def shaped(surface: Surface, logs: Mapping[str, float] | Array) -> Surface:
     surface
         With the limbs of a human body in the bind pose: y up, x ahead, z to the right.
     logs
-        Logarithms of ``FACTORS``, by name or in their order.
+        Logarithms of ``FACTORS``, by name or in their order; a direction of shape that the surface
+        does not have changes nothing.
 
     Raises
     ------
@@ -50,6 +61,9 @@ def shaped(surface: Surface, logs: Mapping[str, float] | Array) -> Surface:
         logs = dict(zip(FACTORS, logs, strict=True))
     if unknown := sorted(set(logs) - set(FACTORS)):
         raise BadSetting(f"no factor is called {', '.join(unknown)}; known: {', '.join(FACTORS)}")
+    steps = {name: _TENTHS * logs.get(name, 0.0) for name in DIRECTIONS if name in surface.shapes}
+    if any(steps.values()):
+        surface = surface.shaped(steps)
     factor = {name: float(np.exp(logs.get(name, 0.0))) for name in FACTORS}
     centres, ends = surface.joint_centres, surface.ends
     n = len(surface.limbs)
@@ -69,6 +83,15 @@ def shaped(surface: Surface, logs: Mapping[str, float] | Array) -> Surface:
         vertices[on] += share[on, None] * away
     new_ends = np.einsum("lij,lj->li", stretch, ends - centres) + moved
     return replace(surface, vertices=vertices, joint_centres=moved, ends=new_ends)
+
+
+def found_shape(logs: Array) -> dict[str, Json]:
+    """Return logarithms of ``FACTORS`` as factors, and as steps along directions of shape."""
+    named = {name: float(log) for name, log in zip(FACTORS, logs, strict=True)}
+    return {
+        "factors": {k: float(np.exp(v)) for k, v in named.items() if k not in DIRECTIONS},
+        "shape_steps": {k: _TENTHS * named[k] for k in DIRECTIONS},
+    }
 
 
 def _stretch(name: str, along: Array, factor: Mapping[str, float]) -> Array:

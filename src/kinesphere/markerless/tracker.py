@@ -18,10 +18,11 @@ from kinesphere.markerless.contour_fit import ContourFitter
 from kinesphere.markerless.eyes import fitter_for, with_body
 from kinesphere.markerless.first_pose import FirstPose, first_pose
 from kinesphere.markerless.fit import Fitter
+from kinesphere.markerless.following import Following
 from kinesphere.markerless.pose import Pose
 from kinesphere.markerless.rehearsal import rehearse
 from kinesphere.markerless.settings import TrackSettings
-from kinesphere.markerless.shape import FACTORS, shaped
+from kinesphere.markerless.shape import found_shape, shaped
 from kinesphere.markerless.shape_fit import fit_shape
 from kinesphere.markerless.sizes import with_best_size
 from kinesphere.markerless.tracked import TrackedMotion
@@ -91,8 +92,8 @@ def track(
             start, scene.cameras, surface, model, settings, pictures, masks=masks
         )
     logs, pose = start.logs, start.pose
-    following = settings.for_masks() if masks else settings
-    fitter = fitter_for(model(shaped(surface, logs)), scene.cameras, following, masks=masks)
+    chosen = settings.for_masks() if masks else settings
+    fitter = fitter_for(model(shaped(surface, logs)), scene.cameras, chosen, masks=masks)
     seconds["start"], clock = perf_counter() - clock, perf_counter()
     if scene.body.fit:
         for i in range(settings.shape_rounds):
@@ -102,17 +103,26 @@ def track(
             logs, poses = fit_shape(fitter, surface, model, logs, instants)
             fitter, pose = with_body(fitter, model(shaped(surface, logs))), poses[0]
         seconds["proportions"] = perf_counter() - clock
-    account = Account(scene, fitter, masks)
+    account = Account(scene, fitter)
     account.seconds.update(seconds)
     try:
         for frames in (scene.frames(first), backwards(scene, first)):
-            tracking = _tracking(fitter, pose, settings, masks)
+            following = Following(
+                _tracking(fitter, pose, settings, masks),
+                masks,
+                lambda: _tracking(
+                    fitter_for(fitter.body, scene.cameras, settings, masks=False),
+                    pose,
+                    settings,
+                    masks=False,
+                ),
+            )
             for frame in frames:
                 clock = perf_counter()
-                pictures = pictures_of(frame, masks)
-                watch = tracking.begin if frame.index == first else tracking.step
-                found = watch(pictures)
-                account.enter(frame, found, perf_counter() - clock)
+                watch = following.begin if frame.index == first else following.step
+                found = watch(frame)
+                account.fitter, unmasked = following.fitter, following.without_masks
+                account.enter(frame, found, perf_counter() - clock, unmasked=unmasked)
                 say("tracking", account.n_entered, scene.n_frames)
     except KeyboardInterrupt:
         if not account.n_entered:
@@ -121,7 +131,7 @@ def track(
         "track",
         settings={"model": scene.body.model, "start": start.how, **settings_as_json(settings)},
         findings={
-            "factors": {k: float(v) for k, v in zip(FACTORS, np.exp(logs), strict=True)},
+            **found_shape(logs),
             "start_overlap": None if np.isnan(start.overlap) else float(start.overlap),
         },
         warnings=(*start.warnings, *account.warnings()),

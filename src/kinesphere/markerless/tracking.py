@@ -12,7 +12,7 @@ from kinesphere.markerless.contour_fit import ContourFitter
 from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.pose import Pose, difference
 from kinesphere.markerless.prediction import expectation, predicted, rest
-from kinesphere.markerless.recovery import Watch, held_lost, recovered
+from kinesphere.markerless.recovery import Watch, carried, held_lost, recovered
 
 _OPENING = 5
 """Times the first pose is fitted at most: nobody knows how far off it is."""
@@ -54,13 +54,13 @@ class Tracking:
         self._look(pictures)
         chain, settings = self.fitter.body.chain, self.fitter.settings
         if self.fitter.open_eyes:
-            self._judged(self.last, learn=1.0)
+            self.judged(self.last, learn=1.0)
             for _ in range(_OPENING):
                 priors = (expectation(chain, self.last, settings), rest(chain, settings, self.last))
                 before, self.last = self.last, self.fitter.fit(self.last, priors)
                 if np.abs(difference(chain, before, self.last)).max() < _STILL:
                     break
-        return self._judged(self.last, learn=1.0)
+        return self.judged(self.last, learn=1.0)
 
     def step(self, pictures: Sequence[NDArray[np.uint8] | None]) -> Found:
         """Find the pose in the next images."""
@@ -70,10 +70,10 @@ class Tracking:
         if not self.fitter.open_eyes:
             # nothing to go by: the last pose stays, and its speed is forgotten
             self.before = None
-            return self._judged(self.last)
+            return self.judged(self.last)
         priors = (expectation(chain, guess, settings), rest(chain, settings, guess))
         pose = (self.contours or self.fitter).fit(guess, priors)
-        found = self._judged(pose, learn=settings.learning)
+        found = self.judged(pose, learn=settings.learning)
         if found.absent:
             # where the person was seen last is where they are looked for until they come back
             self.before = None
@@ -84,7 +84,7 @@ class Tracking:
             better = recovered(self.fitter, pose, names)
             if better is not None:
                 self.before, self.last = None, better  # it did not move there: it was there
-                found = self._judged(better)
+                found = self.judged(better)
         return found
 
     def _look(self, pictures: Sequence[NDArray[np.uint8] | None]) -> None:
@@ -98,7 +98,7 @@ class Tracking:
         if self.contours is not None:
             self.contours.look(views)
 
-    def _judged(self, pose: Pose, learn: float = 0.0) -> Found:
+    def judged(self, pose: Pose, learn: float = 0.0) -> Found:
         """Judge a pose, and take it as true as far as ``learn`` goes."""
         n = len(self.fitter.body.chain.links)
         told_for, told = np.zeros(n), np.zeros(n)
@@ -113,12 +113,19 @@ class Tracking:
                 known = np.isfinite(agreement)
                 np.add.at(told_for, rim.parts[known, 0], agreement[known])
                 np.add.at(told, rim.parts[known, 0], 1)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            support = np.where(told >= _LINES, told_for / told, np.nan)
-            gain = np.where(counts >= _LINES, scores / counts, np.nan)
-        lost = held_lost(support, gain, self.fitter.settings)
+        support, gain = _shares(told_for, told, scores, counts)
+        with_hands = [carried(self.fitter.body.chain, x) for x in (told_for, told, scores, counts)]
+        lost = held_lost(*_shares(*with_hands), self.fitter.settings)
         absent = nobody_seen(support, gain, lost)
         if 0 < learn < 1 and not absent:
             for eye, (parts, rim) in looks:
                 eye.evidence.learn(rim, parts, learn)
         return Found(pose, support, gain, lost, absent)
+
+
+def _shares(told_for: Array, told: Array, scores: Array, counts: Array) -> tuple[Array, Array]:
+    """Return support and gain, (n_limbs,); NaN where there is too little to tell."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        support = np.where(told >= _LINES, told_for / told, np.nan)
+        gain = np.where(counts >= _LINES, scores / counts, np.nan)
+    return support, gain

@@ -15,9 +15,10 @@ _CHUNK = 24
 
 
 def masks_throughout(scene: Scene, first: int) -> bool:
-    """Return whether masks are given of every frame, as far as a look beside the first one tells.
+    """Return whether the scene is followed by masks, as far as a look beside the first one tells.
 
-    Masks of single frames serve the start; between them the person is found by colours.
+    Masks of single frames serve the start; between them the person is found by colours, as they
+    are where masks end.
     """
     if not scene.has_masks:
         return False

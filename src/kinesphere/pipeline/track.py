@@ -53,6 +53,7 @@ def solve_scene(
     settings: Settings | None = None,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
+    after_tracking: Callable[[], None] | None = None,
 ) -> TrackedSolution:
     """Track a person without markers, and run the rest of the line on what was found.
 
@@ -68,6 +69,8 @@ def solve_scene(
         As `kinesphere.solve` takes them; of the tracker ``progress`` tells frames, not stages.
     notice
         Told what looks wrong before tracking begins; the history has it as well.
+    after_tracking
+        Called when tracking has ended: what comes is short, and interrupting it loses all.
 
     Raises
     ------
@@ -90,6 +93,8 @@ def solve_scene(
             notice(warning)
     with clock.stage("track"):
         tracked = track(scene, body_of(scene), settings.tracking, progress)
+        if after_tracking is not None:
+            after_tracking()
         step = tracking_step(tracked, tuple(camera.name for camera in scene.cameras))
         tracked = replace(tracked, history=(*tracked.history, *_reading(scene), step))
         measured = with_first_frame(motion_from_tracked(tracked), scene)

@@ -230,6 +230,10 @@ def test_pixels_of_a_cropped_video_are_mapped(changed, film):
         ("fit = true", 'fit = true\n[start]\npose = "given"', "needs start.values"),
         ("fit = true", 'fit = true\n[start]\npose = "lying"', "start.pose must be"),
         ("fit = true", "fit = true\n[start]\nframe = 8", "the scene has frames 0 to 7"),
+        ("fit = true", "fit = true\n[start]\nfacing = [0.0, 0.0, 0.0]", "nowhere along the floor"),
+        ("fit = true", "fit = true\n[start]\nfacing = [0.0, -2.0, 0.1]", "nowhere along the floor"),
+        ('images = "cam02"', 'images = "./cam01"', "cam01 and cam02 have the same images, ./cam01"),
+        ('masks = "cam02_masks"', 'masks = "cam01_masks"', "have the same masks, cam01_masks"),
         ("rate_hz", 'unit = "mm"\nrate_hz', "calibration.toml is in m"),
         ('plate = "cam01_plate.png"', 'plate = "none.png"', "there is no such file"),
     ],
@@ -288,6 +292,19 @@ def test_frames_in_the_middle_that_cannot_be_decoded_are_missing_not_shifted(tmp
     assert len(frames) == 8
     assert_array_equal(frames[6].images[0], film.scene.frame(6).images[0])
     assert_array_equal(frames[3].images[0], film.scene.frame(3).images[0])
+
+
+def test_a_rate_other_than_the_videos_is_used_aloud(tmp_path, film):
+    pytest.importorskip("av")
+    path = write_scene(film.scene, tmp_path / "v", "mkv")
+    text = path.read_text()
+    assert "rate_hz = 25.0" in text
+    assert read_scene(path).history[0].warnings == ()
+    path.write_text(text.replace("rate_hz = 25.0", "rate_hz = 60"))
+    scene = read_scene(path)
+    assert scene.rate == 60
+    (said,) = scene.history[0].warnings
+    assert said.startswith("rate_hz = 60 is used, but cam01 says 25 Hz")
 
 
 def test_cameras_of_unlike_rates_are_refused(tmp_path, film):

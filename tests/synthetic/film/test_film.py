@@ -114,6 +114,26 @@ def test_spoils_are_switched_on_one_by_one():
         assert np.abs(other - plain).max() > 8, name
 
 
+def test_posts_hide_the_person_before_two_cameras_and_stand_in_the_empty_room():
+    size = {"size": (160, 120), "n_frames": 6}
+    bare = make_film(1, "arms", masks=True, plates=True, **size)
+    film = make_film(1, "arms", conditions="hidden", masks=True, plates=True, **size)
+    frame, free = film.scene.frame(3), bare.scene.frame(3)
+    shares = [m.sum() / f.sum() for m, f in zip(frame.masks, free.masks, strict=True)]
+    assert max(shares[:2]) < 1
+    assert min(shares[:2]) < 0.8
+    assert shares[2:] == [1, 1]
+    for mask, whole, image, plate, empty in zip(
+        frame.masks, free.masks, frame.images, film.scene.plates, bare.scene.plates, strict=True
+    ):
+        assert not (mask & ~whole).any()
+        hidden = whole & ~mask
+        post = np.abs(plate.astype(int) - empty).max(axis=-1) > 20
+        assert post[hidden].mean() > 0.7 if hidden.any() else True
+        if hidden.any():  # there the image shows the post, but for noise
+            assert np.median(np.abs(image.astype(int) - plate)[hidden & post]) < 6
+
+
 def test_loose_clothes_only_add():
     how = CONDITIONS["plain"].__class__(loose=0.03)
     film = make_film(2, "arms", conditions=how, **SMALL)

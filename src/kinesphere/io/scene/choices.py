@@ -10,6 +10,9 @@ from kinesphere.io.scene.spec import SceneSpec
 _LENGTHS_END = "_m"
 """Start values of parameters so named are lengths, the others angles."""
 
+_LEVEL = 0.1
+"""Share of a facing that must lie along the floor; what is steeper leaves the heading open."""
+
 
 def body_choice(spec: SceneSpec, folder: Path) -> BodyChoice:
     """Return the body model; BadScene where it is neither a name nor a file."""
@@ -37,7 +40,8 @@ def start_choice(spec: SceneSpec, turn: Array, first: int, n_frames: int) -> Sta
     Raises
     ------
     BadScene
-        If the start lies outside them, or is to be given and is not.
+        If the start lies outside them, or is to be given and is not, or its facing is no way
+        that a person looks.
     """
     start = spec.start
     frame = max(start.frame, first)
@@ -50,6 +54,13 @@ def start_choice(spec: SceneSpec, turn: Array, first: int, n_frames: int) -> Sta
         raise BadScene('start.pose = "given" needs start.values, the body model\'s parameters')
     if start.pose == "given" and start.keypoints is not None:
         raise BadScene('start.pose = "given" needs no start.keypoints; leave one of them out')
+    if start.facing is not None:
+        along = turn @ start.facing
+        if math.hypot(along[0], along[2]) <= _LEVEL * math.hypot(*along):
+            raise BadScene(
+                f"start.facing = {list(start.facing)} points nowhere along the floor; it is the "
+                "way the person looks, like [1.0, 0.0, 0.0], in the calibration's axes"
+            )
     where = None if start.position_m is None else tuple((turn @ start.position_m).tolist())
     facing = None if start.facing is None else tuple((turn @ start.facing).tolist())
     values = {

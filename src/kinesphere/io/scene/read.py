@@ -50,6 +50,7 @@ def read_scene(path: str | Path) -> Scene:
             f"{path}: camera {', '.join(missing)} is not calibrated; {where} knows "
             f"{', '.join(sorted(known))}"
         )
+    _check_own_files(spec, path)
     warnings: list[str] = []
     if unseen := sorted(known - set(named)):
         warnings.append(f"{', '.join(unseen)} is calibrated, but the scene has no images of it")
@@ -68,7 +69,8 @@ def read_scene(path: str | Path) -> Scene:
         cameras.append(camera)
         warnings += scaled
     body = body_choice(spec, folder)
-    rate = common_rate(spec, opened, path)
+    rate, doubted = common_rate(spec, opened, path)
+    warnings += doubted
     first, n_frames, uneven = common_span(spec, opened, path)
     warnings += uneven
     offsets = tuple(one.spec.offset + first for one in opened)
@@ -136,6 +138,21 @@ def read_scene(path: str | Path) -> Scene:
         first_frame=offsets[0],
         history=(step,),
     )
+
+
+def _check_own_files(spec: SceneSpec, path: Path) -> None:
+    """Refuse images or masks that two cameras are said to have taken."""
+    for what in ("images", "masks", "reference_masks", "plate"):
+        owners: dict[Path, str] = {}
+        for camera in spec.camera:
+            if (said := getattr(camera, what)) is None:
+                continue
+            owner = owners.setdefault((path.parent / said).resolve(), camera.name)
+            if owner != camera.name:
+                raise BadScene(
+                    f"{path}: {owner} and {camera.name} have the same {what}, {said}; each camera "
+                    "needs its own"
+                )
 
 
 def read_scene_spec(path: str | Path) -> SceneSpec:

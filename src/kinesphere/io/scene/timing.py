@@ -11,8 +11,13 @@ _SAME_RATE = 0.005
 """Cameras whose rates differ by less run at one rate: 59.94 and 60 Hz do."""
 
 
-def common_rate(spec: SceneSpec, opened: Sequence[OpenedCamera], path: Path) -> float:
-    """Return the rate, Hz; BadScene where cameras differ or nothing says it."""
+def common_rate(
+    spec: SceneSpec, opened: Sequence[OpenedCamera], path: Path
+) -> tuple[float, list[str]]:
+    """Return the rate, Hz, and what is said of it; BadScene where cameras differ or nothing says.
+
+    ``rate_hz`` goes before what videos say: slow motion is often saved at the rate it is played.
+    """
     told = {o.spec.name: o.stream.rate for o in opened if o.stream.rate is not None}
     if told:
         low, high = min(told, key=lambda n: told[n]), max(told, key=lambda n: told[n])
@@ -21,12 +26,18 @@ def common_rate(spec: SceneSpec, opened: Sequence[OpenedCamera], path: Path) -> 
                 f"{path}: {low} runs at {told[low]:g} Hz and {high} at {told[high]:g} Hz; cameras "
                 "must run at one rate"
             )
-    if spec.rate_hz is not None:
-        return spec.rate_hz
+    if (rate := spec.rate_hz) is not None:
+        other = next((n for n, r in told.items() if abs(r - rate) > _SAME_RATE * rate), None)
+        if other is None:
+            return rate, []
+        return rate, [
+            f"rate_hz = {rate:g} is used, but {other} says {told[other]:g} Hz: right if it was "
+            "saved to be played slower or faster than it happened; otherwise leave rate_hz out"
+        ]
     if told:
-        return float(told[next(iter(told))])
+        return float(told[next(iter(told))]), []
     if min(o.stream.n_frames for o in opened) == 1:
-        return 1.0  # one instant has no rate
+        return 1.0, []  # one instant has no rate
     raise BadScene(f"{path}: images alone have no rate; write rate_hz = 60")
 
 

@@ -21,12 +21,15 @@ class Conditions:
     """0–1, how much of the light a shadow on the floor takes."""
     loose: float = 0.0
     """m, how far clothes stand off and wave."""
+    posts: int = 0
+    """How many cameras have a post before them, which hides some of the person."""
     finer: int = 2
     """Samples a pixel, each way."""
 
 
 CONDITIONS = {
     "plain": Conditions(),
+    "hidden": Conditions(posts=2),
     "textured": Conditions(pattern=1.0, clutter=0.35),
     "clutter": Conditions(
         noise=5.0,

@@ -12,6 +12,7 @@ from kinesphere.data import Array, Camera, Frame, Image, Mask
 from kinesphere.geometry.raster import silhouette, visible_faces
 from kinesphere.synthetic.film.body_motion import BodyMotion
 from kinesphere.synthetic.film.conditions import Conditions
+from kinesphere.synthetic.film.furniture import Furniture, posts_before
 from kinesphere.synthetic.film.kernels import shade_kernel
 from kinesphere.synthetic.film.studio import empty_room
 from kinesphere.synthetic.film.wardrobe import Clothes, cloth_offsets
@@ -44,7 +45,8 @@ class RenderedFootage:
             )
             masks = tuple(
                 silhouette(pixels, self.faces, camera.width, camera.height)
-                for camera, (pixels, _) in zip(self.cameras, shown, strict=True)
+                & ~self._hidden(camera, pixels, depths)
+                for camera, (pixels, depths) in zip(self.cameras, shown, strict=True)
             )
             yield Frame(index, images, masks)
 
@@ -65,7 +67,12 @@ class RenderedFootage:
     @cached_property
     def plates(self) -> tuple[Image, ...]:
         """The empty room as each camera sees it, without noise."""
-        return tuple(np.round(picture).astype(np.uint8) for picture, _ in self._rooms)
+        out = []
+        for camera, (picture, _) in zip(self.cameras, self._rooms, strict=True):
+            nobody, seen = np.empty((0, 3)), (np.empty((0, 2)), np.empty(0))
+            shown = self._drawn(camera, nobody, *seen, self._light(0.0, False), picture.copy())
+            out.append(np.round(shown).astype(np.uint8))
+        return tuple(out)
 
     @cached_property
     def _rooms(self) -> tuple[tuple[Array, Mask], ...]:
@@ -86,29 +93,70 @@ class RenderedFootage:
             self._move_things(c, time, picture)
         if how.shadows > 0:
             self._cast_shadow(c, skin, lamp, picture)
+        picture = self._drawn(camera, skin, pixels, depths, (lamp, gain, ambient), picture)
+        rng = np.random.default_rng([self.seed, 2, index, c])
+        noise = rng.standard_normal(picture.shape, dtype=np.float32)
+        return np.clip(picture * gain + how.noise * noise, 0, 255).astype(np.uint8)
+
+    def _drawn(
+        self,
+        camera: Camera,
+        skin: Array,
+        pixels: Array,
+        depths: Array,
+        light: tuple[Array, float, float],
+        picture: Array,
+    ) -> Array:
+        """Draw the person, if there is a skin, and what stands before it, into a picture."""
+        lamp, _, ambient = light
+        there, things = len(skin) > 0, self._furniture
+        own = self.motion.surface
+        faces = self.faces if there else self.faces[:0]
+        pixels = np.concatenate([pixels, camera.project(things.vertices)])
+        depths = np.concatenate([depths, camera.depths(things.vertices)])
+        faces = np.concatenate([faces, things.faces + len(skin)])
+        normals = np.concatenate([own.normals(skin) if there else skin, things.normals])
+        rest = np.concatenate([own.vertices if there else skin, things.vertices])
+        colours = np.concatenate([self.clothes.colours[: len(skin)] * 1.15, things.colours])
+        patterned = np.append(self.clothes.patterned[: len(skin)], np.zeros(len(things.vertices)))
         # a pixel's samples lie around its centre: pixel p is at finer · p + (finer − 1) / 2
-        finer = how.finer
+        finer = self.conditions.finer
         fine = pixels * finer + (finer - 1) / 2
-        ids, _ = visible_faces(
-            fine, depths, self.faces, camera.width * finer, camera.height * finer
-        )
+        ids, _ = visible_faces(fine, depths, faces, camera.width * finer, camera.height * finer)
         shade_kernel(
             ids,
             finer,
             fine,
             depths,
-            self.faces,
-            self.motion.surface.normals(skin),
-            self.motion.surface.vertices,
-            self.clothes.colours * 1.15,
-            self.clothes.patterned,
+            faces,
+            normals,
+            rest,
+            colours,
+            patterned,
             lamp,
             ambient,
             picture,
         )
-        rng = np.random.default_rng([self.seed, 2, index, c])
-        noise = rng.standard_normal(picture.shape, dtype=np.float32)
-        return np.clip(picture * gain + how.noise * noise, 0, 255).astype(np.uint8)
+        return picture
+
+    @cached_property
+    def _furniture(self) -> Furniture:
+        before = self.cameras[: self.conditions.posts]
+        return posts_before(before, np.random.default_rng([self.seed, 4]))
+
+    def _hidden(self, camera: Camera, pixels: Array, depths: Array) -> Mask:
+        """Return where something stands before the person, or beside them."""
+        things = self._furniture
+        if not len(things.faces):
+            return np.zeros((camera.height, camera.width), dtype=bool)
+        ids, _ = visible_faces(
+            np.concatenate([pixels, camera.project(things.vertices)]),
+            np.concatenate([depths, camera.depths(things.vertices)]),
+            np.concatenate([self.faces, things.faces + len(pixels)]),
+            camera.width,
+            camera.height,
+        )
+        return np.asarray(ids >= len(self.faces))
 
     def _light(self, time: float, second_half: bool) -> tuple[Array, float, float]:
         """Return where the light comes from, how bright it is, and its share from everywhere."""
