@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.signature import Signature, scale_of, signature
 from kinesphere.labelling.bodies import bodies_of
+from kinesphere.labelling.doubting import doubt
+from kinesphere.labelling.exchanging import exchange_blocks, shake
 from kinesphere.labelling.held import held_to_distances
 from kinesphere.labelling.layout import Layout, Solved, layout_of
 from kinesphere.labelling.matching import Match, nothing
@@ -30,8 +32,9 @@ from kinesphere.labelling.same_person import (
     rigid_pairs,
     template_of_person,
 )
-from kinesphere.labelling.search import doubt, exchange_blocks, find_labels, shake
+from kinesphere.labelling.search import find_labels
 from kinesphere.labelling.seating import seated
+from kinesphere.labelling.shapes import alike
 from kinesphere.labelling.template import LEAST_LABELS, Template
 from kinesphere.labelling.verdict import MARGIN as MARGIN
 from kinesphere.labelling.verdict import verdict
@@ -116,7 +119,8 @@ def _solve(found: Signature, layout: Layout) -> Solved:
     scale = scale_of(found.mean) * share
     problem = problem_of(found, scale, template)
     # where there are no more points than labels, all are first taken for markers
-    best = find_labels(problem, layout.moves, layout.near, nullable=found.n > template.n)
+    begin = alike(found.mean / scale, template.mean, layout.twin)
+    best = find_labels(problem, layout.moves, begin, nullable=found.n > template.n)
     labels, energy, rivals = best.labels, best.energy, list(best.rivals)
     rescaled = _scale_by_labels(found, labels, template)
     if abs(rescaled / scale - 1) > RESCALED:
