@@ -121,13 +121,23 @@ def _solve(found: Signature, layout: Layout) -> Solved:
     # where there are no more points than labels, all are first taken for markers
     begin = alike(found.mean / scale, template.mean, layout.twin)
     best = find_labels(problem, layout.moves, begin, nullable=found.n > template.n)
-    labels, energy, rivals = best.labels, best.energy, list(best.rivals)
+    labels, rivals = best.labels, list(best.rivals)
     rescaled = _scale_by_labels(found, labels, template)
     if abs(rescaled / scale - 1) > RESCALED:
         scale = rescaled
         problem = problem_of(found, scale, template)
-        labels, energy, rivals = *_refined(problem, labels, layout), []
+        rivals = _descended(problem, rivals)
+        labels = min(rivals, key=lambda end: (end[0], end[1].tobytes()))[1]
+    labels, energy = _refined(problem, labels, layout)
     return _finished(found, scale, layout, problem, labels, energy, rivals)
+
+
+def _descended(
+    problem: Problem, rivals: list[tuple[float, Labels]]
+) -> list[tuple[float, Labels]]:
+    """Return where other labels end in a problem, and their energy there."""
+    ends = [problem.descend(labels, nullable=True) for _, labels in rivals]
+    return [(problem.energy(labels), labels) for labels in ends]
 
 
 def _of_person(found: Signature, layout: Layout, model: TopologicalModel) -> Solved | str | None:
@@ -179,7 +189,8 @@ def _finished(
         other = problem_of(found, scale, turned, (problem, int(label)))
         if other.energy(labels) < energy - 1e-6:
             template, problem = turned, other
-            labels, energy, rivals = *_refined(problem, labels, layout), []
+            labels, energy = _refined(problem, labels, layout)
+            rivals = _descended(problem, rivals)
     labels, energy, margins = doubt(problem, labels, layout.near, layout.twin, nullable=True)
     return Solved(problem, labels, energy, margins, rivals)
 

@@ -39,6 +39,8 @@ STEPS_A_POINT = 200
 """Exchanges tried for each."""
 NOISE = (3.0, 10.0, 30.0)
 """Nats by which it is left to chance which points fit worst; one of these each time."""
+SLACK = 15.0
+"""Nats that a descent after such an annealing gains at most, next to always."""
 SEED = 20100517
 """Same input, same labels."""
 
@@ -53,7 +55,7 @@ class Found(NamedTuple):
     agreeing: int
     """How many of those mended ended here."""
     rivals: tuple[tuple[float, Labels], ...]
-    """Energy and labels of where the others ended."""
+    """Energy and labels of where those mended ended, these included."""
 
 
 def find_labels(
@@ -83,7 +85,7 @@ def find_labels(
         agreeing = sum(end[1] == best[1] for end in reached)
         if agreeing >= AGREEING:
             break
-    rivals = {key: (energy, labels) for energy, key, labels in [*ends, *reached]}
+    rivals = {key: (energy, labels) for energy, key, labels in reached}
     return Found(best[2], best[0], len(ends), agreeing, tuple(rivals.values()))
 
 
@@ -119,6 +121,8 @@ def mended(
         targets = np.union1d(labels[points][labels[points] >= 0], np.flatnonzero(holder < 0))
         draws = rng.random((STEPS_A_POINT * len(points), 3))
         changed = problem.anneal(labels, draws, WARM, COLD, points=points, targets=targets)
+        if (changed == labels).all() or problem.energy(changed) > energy + SLACK:
+            continue
         changed = problem.descend(changed, nullable=nullable)
         reached = problem.energy(changed)
         if reached < energy - 1e-6:
