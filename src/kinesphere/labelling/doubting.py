@@ -10,6 +10,14 @@ SLIDING = 6
 """Nearest labels whose points might as well belong to a free one."""
 SETTLING = 10
 """Labels around an exchange that settle anew."""
+NEIGHBOURHOODS = 40
+"""Neighbourhoods annealed from the labels that are to be doubted."""
+LABELS = (4, 10)
+"""Labels in one of them."""
+STEPS_A_LABEL = 150
+"""Exchanges tried for each."""
+HOT, COLD = 8.0, 1.0
+"""Their temperatures in nats."""
 ROUNDS = 10
 """Most improvements followed while labels are doubted."""
 
@@ -70,3 +78,40 @@ def _settled(
     held = problem.holders(changed)[targets]
     points = held[held >= 0]
     return problem.descend(changed, nullable=nullable, points=points, targets=targets)
+
+
+def shaken(
+    problem: Problem, labels: Labels, energy: float, margins: Array, near: Labels
+) -> tuple[Labels, float, Array]:
+    """Anneal neighbourhoods anew and see where they end: what ``doubt`` does not lead to.
+
+    Markers that take each other's label in rings of three and more are reached by no exchange of
+    two, and may fit nearly as well.
+
+    Returns
+    -------
+    labels, energy, margins
+        As ``doubt`` does. Where a neighbourhood ends lower, its labels are taken, and margins are
+        those of the labels before: they are to be doubted once more.
+    """
+    rng = np.random.default_rng(0)
+    margins, best = margins.copy(), (energy, labels)
+    for k in range(NEIGHBOURHOODS):
+        size = int(rng.integers(LABELS[0], LABELS[1] + 1))
+        targets = near[k * len(near) // NEIGHBOURHOODS, :size]
+        held = problem.holders(labels)[targets]
+        points = held[held >= 0]
+        if len(points) < 2:
+            continue
+        draws = rng.random((STEPS_A_LABEL * len(points), 3))
+        changed = problem.anneal(labels, draws, HOT, COLD, points=points, targets=targets)
+        if (changed == labels).all():
+            continue
+        reached = problem.energy(changed)
+        moved = changed != labels
+        same = (np.sort(changed) == np.sort(labels)).all()
+        rise = (reached - energy) * (1.0 if same else INTO_FREE)
+        margins[moved] = np.minimum(margins[moved], max(rise, 0.0))
+        if reached < best[0] - 1e-6:
+            best = reached, changed
+    return best[1], best[0], margins

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.signature import Signature, scale_of, signature
 from kinesphere.labelling.bodies import bodies_of
-from kinesphere.labelling.doubting import doubt
+from kinesphere.labelling.doubting import doubt, shaken
 from kinesphere.labelling.exchanging import exchange_blocks, shake
 from kinesphere.labelling.held import held_to_distances
 from kinesphere.labelling.layout import Layout, Solved, layout_of
@@ -32,7 +32,7 @@ from kinesphere.labelling.same_person import (
     rigid_pairs,
     template_of_person,
 )
-from kinesphere.labelling.search import find_labels
+from kinesphere.labelling.search import AGREEING, find_labels
 from kinesphere.labelling.seating import seated
 from kinesphere.labelling.shapes import alike
 from kinesphere.labelling.template import LEAST_LABELS, Template
@@ -129,7 +129,8 @@ def _solve(found: Signature, layout: Layout) -> Solved:
         rivals = _descended(problem, rivals)
         labels = min(rivals, key=lambda end: (end[0], end[1].tobytes()))[1]
     labels, energy = _refined(problem, labels, layout)
-    return _finished(found, scale, layout, problem, labels, energy, rivals)
+    solved = _finished(found, scale, layout, problem, labels, energy, rivals)
+    return solved._replace(converged=min(1.0, (best.agreeing - 1) / (AGREEING - 1)))
 
 
 def _descended(
@@ -192,6 +193,10 @@ def _finished(
             labels, energy = _refined(problem, labels, layout)
             rivals = _descended(problem, rivals)
     labels, energy, margins = doubt(problem, labels, layout.near, layout.twin, nullable=True)
+    better, _, margins = shaken(problem, labels, energy, margins, layout.near)
+    if (better != labels).any():
+        labels = problem.descend(better, nullable=True)
+        labels, energy, margins = doubt(problem, labels, layout.near, layout.twin, nullable=True)
     return Solved(problem, labels, energy, margins, rivals)
 
 

@@ -27,7 +27,7 @@ HOT, WARM, COLD = 15.0, 8.0, 1.0
 quarter (from labels that are right in parts) to less than any exchange."""
 STARTS = (20, 4)
 """Annealings from starts that are given, the best first, and from labels at random."""
-MENDED = 8
+MENDED = 10
 """Most ends that are mended, the best first."""
 AGREEING = 3
 """Ends that are mended into one place from which on no more are."""
@@ -55,7 +55,7 @@ class Found(NamedTuple):
     agreeing: int
     """How many of those mended ended here."""
     rivals: tuple[tuple[float, Labels], ...]
-    """Energy and labels of where those mended ended, these included."""
+    """Energy and labels of where all of them ended, these included."""
 
 
 def find_labels(
@@ -85,7 +85,7 @@ def find_labels(
         agreeing = sum(end[1] == best[1] for end in reached)
         if agreeing >= AGREEING:
             break
-    rivals = {key: (energy, labels) for energy, key, labels in reached}
+    rivals = {key: (energy, labels) for energy, key, labels in [*ends, *reached]}
     return Found(best[2], best[0], len(ends), agreeing, tuple(rivals.values()))
 
 
