@@ -25,9 +25,9 @@ STEPS = 20_000
 HOT, WARM, COLD = 15.0, 8.0, 1.0
 """Temperatures in nats: from half of what a marker's label is worth (from labels at random) or a
 quarter (from labels that are right in parts) to less than any exchange."""
-STARTS = (20, 4)
+STARTS = (24, 6)
 """Annealings from starts that are given, the best first, and from labels at random."""
-MENDED = 10
+MENDED = 16
 """Most ends that are mended, the best first."""
 AGREEING = 3
 """Ends that are mended into one place from which on no more are."""
