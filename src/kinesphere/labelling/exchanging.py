@@ -43,7 +43,9 @@ def _promising(problem: Problem, labels: Labels, blocks: Moves) -> list[Labels]:
     energies = np.full((n, n), np.inf)
     some, weights = problem.thinned
     every = np.arange(len(some))
-    kernels.block_energies(labels, moves, problem.costs, some, weights, problem.table, every, energies)
+    kernels.block_energies(
+        labels, moves, problem.costs, some, weights, problem.table, every, energies
+    )
     found = []
     for code in np.argsort(energies, axis=None, kind="stable")[:BLOCKS]:
         x, y = divmod(int(code), n)

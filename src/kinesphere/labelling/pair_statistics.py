@@ -133,9 +133,7 @@ def _solve(found: Signature, layout: Layout) -> Solved:
     return solved._replace(converged=min(1.0, (best.agreeing - 1) / (AGREEING - 1)))
 
 
-def _descended(
-    problem: Problem, rivals: list[tuple[float, Labels]]
-) -> list[tuple[float, Labels]]:
+def _descended(problem: Problem, rivals: list[tuple[float, Labels]]) -> list[tuple[float, Labels]]:
     """Return where other labels end in a problem, and their energy there."""
     ends = [problem.descend(labels, nullable=True) for _, labels in rivals]
     return [(problem.energy(labels), labels) for labels in ends]

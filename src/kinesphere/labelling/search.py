@@ -108,9 +108,7 @@ def _annealed(
     return sorted(ends.values(), key=lambda end: end[:2])
 
 
-def mended(
-    problem: Problem, labels: Labels, rng: np.random.Generator, *, nullable: bool
-) -> Labels:
+def mended(problem: Problem, labels: Labels, rng: np.random.Generator, *, nullable: bool) -> Labels:
     """Return labels after annealing the points that fit worst, again and again."""
     energy, n = problem.energy(labels), problem.n_points
     for _ in range(MENDINGS):
