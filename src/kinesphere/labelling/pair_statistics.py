@@ -22,7 +22,7 @@ from kinesphere.labelling.exchanging import exchange_blocks, shake
 from kinesphere.labelling.held import held_to_distances
 from kinesphere.labelling.layout import Layout, Solved, layout_of
 from kinesphere.labelling.matching import Match, nothing
-from kinesphere.labelling.plausible import is_still, learnt_standing, plausible
+from kinesphere.labelling.plausible import in_own_order, is_still, learnt_standing, plausible
 from kinesphere.labelling.problem import Labels, Problem, problem_of
 from kinesphere.labelling.same_person import (
     MIRROR_IMAGE,
@@ -78,6 +78,7 @@ def match_pair_statistics(
         return nothing(
             n_points, f"{len(kept)} markers are seen; {LEAST_LABELS} at least can be told apart"
         )
+    kept = in_own_order(points, kept)
     found = signature(points[:, kept])
     again = _of_person(found, layout, model)
     if isinstance(again, str):

@@ -47,6 +47,11 @@ def verdict(
             f"left and right of {name} cannot be told: {agreement:.2f} of the handedness "
             f"agrees, {LEAST_AGREEMENT} at least is needed"
         )
+    if solved.converged == 0 and not confidence.any():
+        return match.refused(
+            f"no two starts of the search ended in the same labels of {name}: longer motion, or a "
+            "model of more people, tells more"
+        )
     return match
 
 
