@@ -28,9 +28,11 @@ quarter (from labels that are right in parts) to less than any exchange."""
 STARTS = (24, 6)
 """Annealings from starts that are given, the best first, and from labels at random."""
 MENDED = 16
-"""Most ends that are mended, the best first."""
+"""Most ends of one round that are mended, the best first."""
 AGREEING = 3
 """Ends that are mended into one place from which on no more are."""
+ROUNDS = 3
+"""Most rounds of annealings, while ends do not agree: a second finds what the first found once."""
 MENDINGS = 20
 """Annealings of what fits worst, of one end."""
 WORST = (5, 25)
@@ -43,6 +45,14 @@ SLACK = 15.0
 """Nats that a descent after such an annealing gains at most, next to always."""
 SEED = 20100517
 """Same input, same labels."""
+
+
+class End(NamedTuple):
+    """Where a search ended, and how often it did."""
+
+    energy: float
+    labels: Labels
+    times: int
 
 
 class Found(NamedTuple):
@@ -74,25 +84,33 @@ def find_labels(
         numbers force.
     """
     rng = np.random.default_rng(SEED)
-    ends = _annealed(problem, begin, rng, nullable=nullable)
-    reached: list[tuple[float, bytes, Labels]] = []
-    for _, _, end in ends[:MENDED]:
-        labels, _ = exchange_blocks(problem, end, moves, nullable=nullable)
-        labels = mended(problem, labels, rng, nullable=nullable)
-        labels, energy = exchange_blocks(problem, labels, moves, nullable=nullable)
-        reached.append((energy, labels.tobytes(), labels))
-        best = min(reached, key=lambda end: end[:2])
-        agreeing = sum(end[1] == best[1] for end in reached)
-        if agreeing >= AGREEING:
+    reached: dict[bytes, End] = {}
+    rivals: dict[bytes, tuple[float, Labels]] = {}
+    starts = 0
+    for _ in range(ROUNDS):
+        ends = _annealed(problem, begin, rng, nullable=nullable)
+        starts += sum(end.times for end in ends)
+        rivals |= {end.labels.tobytes(): (end.energy, end.labels) for end in ends}
+        for end in ends[:MENDED]:
+            labels, _ = exchange_blocks(problem, end.labels, moves, nullable=nullable)
+            labels = mended(problem, labels, rng, nullable=nullable)
+            labels, energy = exchange_blocks(problem, labels, moves, nullable=nullable)
+            before = reached.get(labels.tobytes())
+            times = end.times + (before.times if before else 0)
+            reached[labels.tobytes()] = End(energy, labels, times)
+            best = min(reached.values(), key=_order)
+            if best.times >= AGREEING:
+                break
+        if best.times >= AGREEING:
             break
-    rivals = {key: (energy, labels) for energy, key, labels in [*ends, *reached]}
-    return Found(best[2], best[0], len(ends), agreeing, tuple(rivals.values()))
+    rivals |= {key: (end.energy, end.labels) for key, end in reached.items()}
+    return Found(best.labels, best.energy, starts, best.times, tuple(rivals.values()))
 
 
 def _annealed(
     problem: Problem, begin: Sequence[Labels], rng: np.random.Generator, *, nullable: bool
-) -> list[tuple[float, bytes, Labels]]:
-    """Return where annealings end, once each, the best first."""
+) -> list[End]:
+    """Return where annealings end, the best first."""
     n, m = problem.n_points, problem.n_labels
     n_steps = max(500, round(STEPS * max(n, m) * m / 41**2))
     starts = [(labels, WARM) for labels in sorted(begin, key=problem.energy)[: STARTS[0]]]
@@ -100,12 +118,18 @@ def _annealed(
         labels = np.full(n, -1, dtype=np.int64)
         labels[rng.permutation(n)[:m]] = rng.permutation(m)[:n]
         starts.append((labels, HOT))
-    ends = {}
+    ends: dict[bytes, End] = {}
     for labels, hot in starts:
         labels = problem.anneal(labels, rng.random((n_steps, 3)), hot, COLD)
         labels = problem.descend(labels, nullable=nullable)
-        ends[labels.tobytes()] = (problem.energy(labels), labels.tobytes(), labels)
-    return sorted(ends.values(), key=lambda end: end[:2])
+        before = ends.get(labels.tobytes())
+        times = before.times + 1 if before else 1
+        ends[labels.tobytes()] = End(problem.energy(labels), labels, times)
+    return sorted(ends.values(), key=_order)
+
+
+def _order(end: End) -> tuple[float, bytes]:
+    return end.energy, end.labels.tobytes()
 
 
 def mended(problem: Problem, labels: Labels, rng: np.random.Generator, *, nullable: bool) -> Labels:
