@@ -4,7 +4,7 @@ import argparse
 import json
 import sys
 
-from benchmarks.accuracy.labels import broken, clean, elsewhere, live, missing, trials
+from benchmarks.accuracy.labels import broken, clean, elsewhere, live, missing, reliability, trials
 from benchmarks.accuracy.labels.page import page
 from benchmarks.accuracy.labels.sources import ROOT, folder
 from kinesphere import __version__
@@ -15,6 +15,7 @@ PARTS = {
     "windows-5s": lambda: clean.windows(5.0, several=False),
     "windows-2s": lambda: clean.windows(2.0, several=True),
     "missing": missing.missing,
+    "reliability": reliability.reliability,
     "broken": broken.broken,
     "broken-fresh": lambda: broken.broken(broken.FRESH),
     "halves": elsewhere.halves,

@@ -95,6 +95,28 @@ def _missing_line(name: str, rows: Rows) -> str:
     )
 
 
+def _reliability(rows: Rows) -> str:
+    kinds = list(dict.fromkeys(r["cases"] for r in rows))
+    lines = []
+    for low in sorted({r["from"] for r in rows}):
+        some = {r["cases"]: r for r in rows if r["from"] == low}
+        to = next(iter(some.values()))["to"]
+        cells = [_share(some[kind]["right"], some[kind]["labels"]) for kind in kinds]
+        every = _share(
+            sum(r["right"] for r in some.values()), sum(r["labels"] for r in some.values())
+        )
+        lines.append(f"| {low:g}–{to:g} | {' | '.join(cells)} | {every} |")
+    return (
+        "Right labels of those that were stated to be so sure, before any is refused: windows half "
+        "their length later than above, other markers missing than above.\n\n"
+        + _table(f"| confidence | {' | '.join(kinds)} | all |", lines, "l" + "r" * (len(kinds) + 1))
+    )
+
+
+def _share(right: int, of: int) -> str:
+    return f"{right} of {of} ({right / of:.1%})" if of else "–"
+
+
 def _broken(rows: Rows) -> str:
     lines = [_broken_line(f"{r['recording']}", r["ghosts"], r["hidden"], [r]) for r in rows]
     lines.append(_broken_line("all", "", "", rows))
@@ -208,6 +230,7 @@ _SECTIONS: dict[str, tuple[str, Callable[[Rows], str]]] = {
     "windows-5s": ("Windows of 5 s, model of one other person", _windows),
     "windows-2s": ("Windows of 2 s, model of three other people", _windows),
     "missing": ("Markers that are not there", _missing),
+    "reliability": ("How sure, how often right", _reliability),
     "broken": ("Ghosts, hidden markers, cut trajectories", _broken),
     "broken-fresh": ("The same, broken anew", _broken_anew),
     "halves": ("Other layouts, first half against second", _elsewhere),

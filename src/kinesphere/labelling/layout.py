@@ -33,6 +33,9 @@ class Solved(NamedTuple):
     energy: float
     margins: Array
     rivals: list[tuple[float, Labels]]
+    """Energies and labels of other ends of the search."""
+    converged: float = 1.0
+    """0…1: how far starts ended in these labels, 1 from as many on as are looked for."""
 
 
 def layout_of(model: TopologicalModel) -> Layout:

@@ -38,6 +38,8 @@ RENEWED_S = 1.0
 """s between two measurements of all distances."""
 STEADY = 0.03
 """m, most that a distance may vary for a marker to be held to it."""
+USUAL_S = 20.0
+"""s of the person's own motion that count as much as that of other people."""
 NEIGHBOURS = 6
 """Steadiest neighbours that a marker is held to."""
 
@@ -54,6 +56,10 @@ class LiveLabels:
         Names of the columns.
     rate
         Hz, frames that will come a second.
+    usual : (n_labels, n_labels) m
+        Deviation of every distance in other people's movement; NaN where not known. What was
+        steady in a few seconds need not be: it counts as ``USUAL_S`` of motion beside the person's
+        own.
 
     Raises
     ------
@@ -61,7 +67,9 @@ class LiveLabels:
         If fewer than four markers were ever seen in it.
     """
 
-    def __init__(self, labelled: Array, labels: tuple[str, ...], rate: float) -> None:
+    def __init__(
+        self, labelled: Array, labels: tuple[str, ...], rate: float, usual: Array | None = None
+    ) -> None:
         seen = np.asarray(np.isfinite(labelled).all(axis=2))
         if seen.any(axis=0).sum() < 4:
             raise BadRecording(
@@ -72,6 +80,7 @@ class LiveLabels:
         n = len(labels)
         self._rate = rate
         self._reach = reach_at(rate)
+        self._usual = np.full((n, n), np.nan) if usual is None else usual
         self._sums = np.zeros((3, n, n))
         moments(np.ascontiguousarray(labelled), 0, n, *self._sums)
         self._measure()
@@ -187,7 +196,11 @@ class LiveLabels:
             self._measure()
 
     def _measure(self) -> None:
-        self.own: OwnDistances = from_moments(*self._sums)
+        own = from_moments(*self._sums)
+        count, prior = self._sums[2], np.where(np.isnan(self._usual), 0.0, USUAL_S * self._rate)
+        pooled = count * own.deviation**2 + prior * np.nan_to_num(self._usual) ** 2
+        deviation = np.sqrt(pooled / np.maximum(count + prior, 1.0))
+        self.own: OwnDistances = replace(own, deviation=deviation)
         self._ranked = np.argsort(
             np.where(np.isnan(self.own.deviation), np.inf, self.own.deviation), axis=1
         )

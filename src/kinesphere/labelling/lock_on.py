@@ -17,7 +17,7 @@ from kinesphere.labelling.live import LiveLabels
 from kinesphere.labelling.pair_statistics import match_pair_statistics
 from kinesphere.labelling.runs import runs_of
 from kinesphere.labelling.settings import LabellingSettings
-from kinesphere.labelling.template import template_of
+from kinesphere.labelling.template import template_of, usual_deviations
 from kinesphere.labelling.through_time import label_through_time
 
 LONGEST = 3
@@ -68,7 +68,7 @@ class LiveLabeller:
     ) -> None:
         if not (rate > 0 and np.isfinite(rate)) or not (seconds > 0 and np.isfinite(seconds)):
             raise BadSetting(f"rate {rate} Hz and {seconds} s: both must be more than nothing")
-        template_of(model)
+        self._usual = usual_deviations(model)
         self.labels = model.labels
         """Names of the labels that indices stand for."""
         self.note = f"waiting for {seconds:g} s of motion"
@@ -146,7 +146,7 @@ class LiveLabeller:
         found = np.isfinite(state.points[-1, :, 0]).sum()
         if 2 * found < len(template_of(self._model).labels):
             return state.notes[0] if state.notes else "less than half of the body is recognised"
-        return LiveLabels(state.points, self.labels, self._rate)
+        return LiveLabels(state.points, self.labels, self._rate, self._usual)
 
     def _end(self, result: LiveLabels | str) -> NDArray[np.int64]:
         """Take over what was recognised, and begin to make up for the frames since."""

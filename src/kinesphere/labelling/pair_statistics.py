@@ -17,10 +17,12 @@ from numpy.typing import NDArray
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.signature import Signature, scale_of, signature
 from kinesphere.labelling.bodies import bodies_of
+from kinesphere.labelling.doubting import doubt, shaken
+from kinesphere.labelling.exchanging import exchange_blocks, shake
 from kinesphere.labelling.held import held_to_distances
 from kinesphere.labelling.layout import Layout, Solved, layout_of
 from kinesphere.labelling.matching import Match, nothing
-from kinesphere.labelling.plausible import is_still, learnt_standing, plausible
+from kinesphere.labelling.plausible import in_own_order, is_still, learnt_standing, plausible
 from kinesphere.labelling.problem import Labels, Problem, problem_of
 from kinesphere.labelling.same_person import (
     MIRROR_IMAGE,
@@ -30,8 +32,9 @@ from kinesphere.labelling.same_person import (
     rigid_pairs,
     template_of_person,
 )
-from kinesphere.labelling.search import doubt, exchange_blocks, find_labels, shake
+from kinesphere.labelling.search import AGREEING, find_labels
 from kinesphere.labelling.seating import seated
+from kinesphere.labelling.shapes import alike
 from kinesphere.labelling.template import LEAST_LABELS, Template
 from kinesphere.labelling.verdict import MARGIN as MARGIN
 from kinesphere.labelling.verdict import verdict
@@ -75,6 +78,7 @@ def match_pair_statistics(
         return nothing(
             n_points, f"{len(kept)} markers are seen; {LEAST_LABELS} at least can be told apart"
         )
+    kept = in_own_order(points, kept)
     found = signature(points[:, kept])
     again = _of_person(found, layout, model)
     if isinstance(again, str):
@@ -116,14 +120,24 @@ def _solve(found: Signature, layout: Layout) -> Solved:
     scale = scale_of(found.mean) * share
     problem = problem_of(found, scale, template)
     # where there are no more points than labels, all are first taken for markers
-    best = find_labels(problem, layout.moves, layout.near, nullable=found.n > template.n)
-    labels, energy, rivals = best.labels, best.energy, list(best.rivals)
+    begin = alike(found.mean / scale, template.mean, layout.twin)
+    best = find_labels(problem, layout.moves, begin, nullable=found.n > template.n)
+    labels, rivals = best.labels, list(best.rivals)
     rescaled = _scale_by_labels(found, labels, template)
     if abs(rescaled / scale - 1) > RESCALED:
         scale = rescaled
         problem = problem_of(found, scale, template)
-        labels, energy, rivals = *_refined(problem, labels, layout), []
-    return _finished(found, scale, layout, problem, labels, energy, rivals)
+        rivals = _descended(problem, rivals)
+        labels = min(rivals, key=lambda end: (end[0], end[1].tobytes()))[1]
+    labels, energy = _refined(problem, labels, layout)
+    solved = _finished(found, scale, layout, problem, labels, energy, rivals)
+    return solved._replace(converged=min(1.0, (best.agreeing - 1) / (AGREEING - 1)))
+
+
+def _descended(problem: Problem, rivals: list[tuple[float, Labels]]) -> list[tuple[float, Labels]]:
+    """Return where other labels end in a problem, and their energy there."""
+    ends = [problem.descend(labels, nullable=True) for _, labels in rivals]
+    return [(problem.energy(labels), labels) for labels in ends]
 
 
 def _of_person(found: Signature, layout: Layout, model: TopologicalModel) -> Solved | str | None:
@@ -175,8 +189,13 @@ def _finished(
         other = problem_of(found, scale, turned, (problem, int(label)))
         if other.energy(labels) < energy - 1e-6:
             template, problem = turned, other
-            labels, energy, rivals = *_refined(problem, labels, layout), []
+            labels, energy = _refined(problem, labels, layout)
+            rivals = _descended(problem, rivals)
     labels, energy, margins = doubt(problem, labels, layout.near, layout.twin, nullable=True)
+    better, _, margins = shaken(problem, labels, energy, margins, layout.near)
+    if (better != labels).any():
+        labels = problem.descend(better, nullable=True)
+        labels, energy, margins = doubt(problem, labels, layout.near, layout.twin, nullable=True)
     return Solved(problem, labels, energy, margins, rivals)
 
 

@@ -13,13 +13,15 @@ import numpy as np
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.signature import signature
 from kinesphere.labelling.blocks import twins
+from kinesphere.labelling.doubting import doubt
+from kinesphere.labelling.exchanging import shake
 from kinesphere.labelling.kernels import linear_terms
 from kinesphere.labelling.labelled import Labelled, give, length_of
 from kinesphere.labelling.own_distances import FLOOR, own_distances
 from kinesphere.labelling.pair_statistics import MARGIN
 from kinesphere.labelling.problem import Labels, problem_of
 from kinesphere.labelling.runs import points_of
-from kinesphere.labelling.search import doubt, nearest_labels, shake
+from kinesphere.labelling.search import nearest_labels
 from kinesphere.labelling.template import (
     DEVIATION_FLOOR,
     DEVIATION_SHARE,

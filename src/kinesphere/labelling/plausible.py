@@ -50,6 +50,17 @@ def plausible(points: Array, seen: NDArray[np.bool_], n_labels: int) -> NDArray[
     return kept[steady <= limit]
 
 
+def in_own_order(points: Array, kept: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return these points in an order that does not depend on theirs: by their distances.
+
+    The search draws exchanges at random; so the same points give the same labels in any order.
+    """
+    mean = pair_distances(points[evenly_spread(len(points), FRAMES)][:, kept]).mean
+    ranked = np.sort(np.where(np.isfinite(mean), mean, np.inf), axis=1)
+    n = len(kept)
+    return kept[np.lexsort((ranked[:, n // 4], ranked[:, n // 2]))]
+
+
 def _deviations(points: Array) -> Array:
     """Return deviations of distances in scales, NaN where never seen together; (n, n)."""
     found = pair_distances(points[evenly_spread(len(points), FRAMES)])

@@ -6,6 +6,7 @@ nothing, so labels that fit worse than nothing are not given.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,8 @@ STILLER = 0.25
 """Least that a deviation below the template's counts, beside one above it: a limb that rests while
 it is recorded is steady with everything, forty pairs at once that tell one thing. What a single
 recording rested in is not known, so it counts one over the number of recordings."""
+THINNED = 500
+"""Quadruples that are enough while labels change at random."""
 FEWEST_FRAMES = 5
 """Frames together that make a pair count in full; one alone says nothing of a spread."""
 
@@ -111,21 +114,49 @@ class Problem:
         )
         return changed
 
-    def anneal(self, labels: Labels, draws: Array, hot: float, cold: float) -> Labels:
-        """Return labels after random exchanges that grow less willing to go upward."""
+    def anneal(
+        self,
+        labels: Labels,
+        draws: Array,
+        hot: float,
+        cold: float,
+        *,
+        points: Labels | None = None,
+        targets: Labels | None = None,
+    ) -> Labels:
+        """Return labels after random exchanges, among some points and labels if given.
+
+        They grow less willing to go upward. A share of the quadruples stands for all of them.
+        """
         changed = labels.copy()
+        some, weights = self.thinned
         kernels.anneal(
             changed,
             self.holders(changed),
             self.costs,
-            *self.handed,
-            self.of_label,
-            self.n_of_label,
+            some,
+            weights,
+            self.table,
+            *holding(some, self.n_labels),
+            np.arange(self.n_points) if points is None else points,
+            np.arange(self.n_labels) if targets is None else targets,
             draws,
             hot,
             cold,
         )
         return changed
+
+    @cached_property
+    def thinned(self) -> tuple[NDArray[np.int64], Array]:
+        """Every so many of the quadruples, and what each then wants."""
+        step = max(1, len(self.quadruples) // THINNED)
+        return np.ascontiguousarray(self.quadruples[::step]), step * self.wanted[::step]
+
+    def energies(self, labels: Labels) -> Array:
+        """Return the energy each point takes part in, (n_points,)."""
+        energies = np.empty(self.n_points)
+        kernels.point_energies(labels, self.holders(labels), self.costs, *self.handed, energies)
+        return energies
 
     def least_changes(self, labels: Labels) -> tuple[Array, Labels]:
         """Return the least rise of energy that changes each point's label, and to which."""
@@ -179,16 +210,22 @@ def problem_of(
         only,
         costs,
     )
-    holding = [np.flatnonzero((template.quadruples == i).any(axis=1)) for i in range(template.n)]
-    n_of_label = np.array([len(quads) for quads in holding], dtype=np.int64)
-    of_label = np.zeros((template.n, max(1, int(n_of_label.max(initial=0)))), dtype=np.int64)
-    for i, quads in enumerate(holding):
-        of_label[i, : len(quads)] = quads
     return Problem(
         costs,
         template.quadruples,
         HANDED * template.handedness,
         found.handedness,
-        of_label,
-        n_of_label,
+        *holding(template.quadruples, template.n),
     )
+
+
+def holding(
+    quadruples: NDArray[np.int64], n_labels: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return which quadruples hold each label, (n_labels, most), and how many, (n_labels,)."""
+    found = [np.flatnonzero((quadruples == i).any(axis=1)) for i in range(n_labels)]
+    count = np.array([len(some) for some in found], dtype=np.int64)
+    of_label = np.zeros((n_labels, max(1, int(count.max(initial=0)))), dtype=np.int64)
+    for i, some in enumerate(found):
+        of_label[i, : len(some)] = some
+    return of_label, count

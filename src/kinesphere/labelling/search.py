@@ -1,37 +1,58 @@
-"""The labels of least energy: annealing from several starts, then exchanges of whole blocks."""
+"""The labels of least energy: many starts annealed, the best of them mended where they fit worst.
 
+Annealed from random labels, a body ends in one of many labellings that are right in parts and that
+no exchange of two labels leads out of. Two things help: starts that have the body's shape
+(``labelling.shapes``), and annealing anew only the points that fit worst beside the others (large
+neighbourhood search [1]_), for the wrong ones are among those.
+
+References
+----------
+.. [1] Shaw (1998), Principles and Practice of Constraint Programming, LNCS 1520, 417-431.
+"""
+
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.labelling import kernels
 from kinesphere.labelling.blocks import Moves
-from kinesphere.labelling.problem import INTO_FREE, Labels, Problem
-from kinesphere.labelling.slides import slide
+from kinesphere.labelling.exchanging import exchange_blocks
+from kinesphere.labelling.problem import Labels, Problem
 
 STEPS = 20_000
 """Exchanges tried in one annealing of 41 markers; in proportion to the square of their number."""
-HOT, COLD = 15.0, 1.0
-"""Temperatures in nats: from half of what a marker's label is worth to less than any exchange."""
-STARTS = 12
-"""Most annealings."""
+HOT, WARM, COLD = 15.0, 8.0, 1.0
+"""Temperatures in nats: from half of what a marker's label is worth (from labels at random) or a
+quarter (from labels that are right in parts) to less than any exchange."""
+STARTS = (24, 6)
+"""Annealings from starts that are given, the best first, and from labels at random."""
+MENDED = 16
+"""Most ends of one round that are mended, the best first."""
 AGREEING = 3
-"""Starts that end in one place from which on no more are made."""
-BLOCKS = 12
-"""Exchanges of blocks that are followed to their end, the most promising first."""
-SHAKES = 100
-"""Neighbourhoods shuffled at the end."""
-NEIGHBOURS = (4, 10)
-"""Labels in one of them."""
-SLIDING = 6
-"""Nearest labels whose points might as well belong to a free one."""
-SETTLING = 10
-"""Labels around an exchange that settle anew."""
-ROUNDS = 10
-"""Most improvements followed while labels are doubted."""
+"""Ends that are mended into one place from which on no more are."""
+ROUNDS = 3
+"""Most rounds of annealings, while ends do not agree: a second finds what the first found once."""
+MENDINGS = 20
+"""Annealings of what fits worst, of one end."""
+WORST = (5, 25)
+"""Points in one of them."""
+STEPS_A_POINT = 200
+"""Exchanges tried for each."""
+NOISE = (3.0, 10.0, 30.0)
+"""Nats by which it is left to chance which points fit worst; one of these each time."""
+SLACK = 15.0
+"""Nats that a descent after such an annealing gains at most, next to always."""
 SEED = 20100517
 """Same input, same labels."""
+
+
+class End(NamedTuple):
+    """Where a search ended, and how often it did."""
+
+    energy: float
+    labels: Labels
+    times: int
 
 
 class Found(NamedTuple):
@@ -42,13 +63,13 @@ class Found(NamedTuple):
     starts: int
     """Annealings made."""
     agreeing: int
-    """How many of them ended here."""
+    """How many of those mended ended here."""
     rivals: tuple[tuple[float, Labels], ...]
-    """Energy and labels of where the others ended."""
+    """Energy and labels of where all of them ended, these included."""
 
 
 def find_labels(
-    problem: Problem, moves: Moves, near: Labels, *, nullable: bool, starts: int = STARTS
+    problem: Problem, moves: Moves, begin: Sequence[Labels], *, nullable: bool
 ) -> Found:
     """Search for the labels of least energy.
 
@@ -56,167 +77,79 @@ def find_labels(
     ----------
     moves
         Exchanges of blocks, as ``block_moves`` returns them.
-    near : (n_labels, n_labels)
-        For each label all labels, the nearest first, itself included.
+    begin
+        Labels to start from, in any order; may be none.
     nullable
         Whether points may stay without a label, and labels without a point, beyond what their
         numbers force.
     """
     rng = np.random.default_rng(SEED)
+    reached: dict[bytes, End] = {}
+    rivals: dict[bytes, tuple[float, Labels]] = {}
+    starts = 0
+    for _ in range(ROUNDS):
+        ends = _annealed(problem, begin, rng, nullable=nullable)
+        starts += sum(end.times for end in ends)
+        rivals |= {end.labels.tobytes(): (end.energy, end.labels) for end in ends}
+        for end in ends[:MENDED]:
+            labels, _ = exchange_blocks(problem, end.labels, moves, nullable=nullable)
+            labels = mended(problem, labels, rng, nullable=nullable)
+            labels, energy = exchange_blocks(problem, labels, moves, nullable=nullable)
+            before = reached.get(labels.tobytes())
+            times = end.times + (before.times if before else 0)
+            reached[labels.tobytes()] = End(energy, labels, times)
+            best = min(reached.values(), key=_order)
+            if best.times >= AGREEING:
+                break
+        if best.times >= AGREEING:
+            break
+    rivals |= {key: (end.energy, end.labels) for key, end in reached.items()}
+    return Found(best.labels, best.energy, starts, best.times, tuple(rivals.values()))
+
+
+def _annealed(
+    problem: Problem, begin: Sequence[Labels], rng: np.random.Generator, *, nullable: bool
+) -> list[End]:
+    """Return where annealings end, the best first."""
     n, m = problem.n_points, problem.n_labels
     n_steps = max(500, round(STEPS * max(n, m) * m / 41**2))
-    ends: list[tuple[float, bytes, Labels]] = []
-    for _ in range(starts):
+    starts = [(labels, WARM) for labels in sorted(begin, key=problem.energy)[: STARTS[0]]]
+    for _ in range(sum(STARTS) - len(starts)):
         labels = np.full(n, -1, dtype=np.int64)
         labels[rng.permutation(n)[:m]] = rng.permutation(m)[:n]
-        labels = problem.anneal(labels, rng.random((n_steps, 3)), HOT, COLD)
+        starts.append((labels, HOT))
+    ends: dict[bytes, End] = {}
+    for labels, hot in starts:
+        labels = problem.anneal(labels, rng.random((n_steps, 3)), hot, COLD)
         labels = problem.descend(labels, nullable=nullable)
-        labels, energy = exchange_blocks(problem, labels, moves, nullable=nullable)
-        ends.append((energy, labels.tobytes(), labels))
-        best = min(ends, key=lambda end: end[:2])
-        agreeing = sum(end[1] == best[1] for end in ends)
-        if agreeing >= AGREEING:
-            break
-    labels, energy = shake(problem, best[2], near, rng, nullable=nullable)
-    labels, energy = exchange_blocks(problem, labels, moves, nullable=nullable)
-    rivals = tuple((end[0], end[2]) for end in ends)
-    return Found(labels, energy, len(ends), agreeing, rivals)
+        before = ends.get(labels.tobytes())
+        times = before.times + 1 if before else 1
+        ends[labels.tobytes()] = End(problem.energy(labels), labels, times)
+    return sorted(ends.values(), key=_order)
 
 
-def exchange_blocks(
-    problem: Problem, labels: Labels, moves: Moves, *, nullable: bool
-) -> tuple[Labels, float]:
-    """Return labels after exchanges of blocks, each followed by a descent, while that helps."""
-    energy = problem.energy(labels)
-    known = {labels.tobytes()}
-    while True:
-        best = None
-        for tried in _promising(problem, labels, moves):
-            changed = problem.descend(tried, nullable=nullable)
-            if changed.tobytes() in known:
-                continue
-            known.add(changed.tobytes())
-            reached = problem.energy(changed)
-            if reached < energy - 1e-6 and (best is None or reached < best[0]):
-                best = reached, changed
-        if best is None:
-            break
-        energy, labels = best
-    return labels, energy
+def _order(end: End) -> tuple[float, bytes]:
+    return end.energy, end.labels.tobytes()
 
 
-def _promising(problem: Problem, labels: Labels, blocks: Moves) -> list[Labels]:
-    """Return what the most promising one or two moves lead to, further ones added greedily."""
-    moves = blocks.every
-    n = len(moves)
-    energies = np.full((n, n), np.inf)
-    every = np.arange(len(problem.quadruples))
-    kernels.block_energies(labels, moves, problem.costs, *problem.handed, every, energies)
-    found = []
-    for code in np.argsort(energies, axis=None, kind="stable")[:BLOCKS]:
-        x, y = divmod(int(code), n)
-        if not np.isfinite(energies[x, y]):
-            break
-        tried = _moved(labels, moves[x])
-        tried = _moved(tried, moves[y]) if y > x else tried
-        found.append(_greedy(problem, tried, moves, energies[x, y]))
-    # a body taken for one that faces the other way: mirrored, and every segment turned
-    mirrored = _moved(labels, blocks.every[0])
-    found.append(_greedy(problem, mirrored, blocks.turns, problem.energy(mirrored)))
-    return found
-
-
-def _greedy(problem: Problem, labels: Labels, moves: Labels, energy: float) -> Labels:
-    while len(moves):
-        energies = np.empty(len(moves))
-        every = np.arange(len(problem.quadruples))
-        kernels.move_energies(labels, moves, problem.costs, *problem.handed, every, energies)
-        best = int(energies.argmin())
-        if not energies[best] < energy - 1e-6:
-            return labels
-        labels, energy = _moved(labels, moves[best]), float(energies[best])
-    return labels
-
-
-def _moved(labels: Labels, move: Labels) -> Labels:
-    return np.where(labels >= 0, move[labels], -1)
-
-
-def shake(
-    problem: Problem, labels: Labels, near: Labels, rng: np.random.Generator, *, nullable: bool
-) -> tuple[Labels, float]:
-    """Return labels after shuffling neighbourhoods, each followed by a descent among its own."""
-    energy = problem.energy(labels)
-    for _ in range(SHAKES):
-        size = int(rng.integers(NEIGHBOURS[0], NEIGHBOURS[1] + 1))
-        targets = near[rng.integers(len(near)), :size]
-        held = problem.holders(labels)[targets]
-        points = held[held >= 0]
-        changed = labels.copy()
-        changed[points] = rng.permutation(targets)[: len(points)]
-        changed = problem.descend(changed, nullable=nullable, points=points, targets=targets)
+def mended(problem: Problem, labels: Labels, rng: np.random.Generator, *, nullable: bool) -> Labels:
+    """Return labels after annealing the points that fit worst, again and again."""
+    energy, n = problem.energy(labels), problem.n_points
+    for _ in range(MENDINGS):
+        size = int(rng.integers(WORST[0], WORST[1] + 1))
+        noise = rng.choice(NOISE) * rng.gumbel(size=n)
+        points = np.argsort(-(problem.energies(labels) + noise), kind="stable")[:size]
+        holder = problem.holders(labels)
+        targets = np.union1d(labels[points][labels[points] >= 0], np.flatnonzero(holder < 0))
+        draws = rng.random((STEPS_A_POINT * len(points), 3))
+        changed = problem.anneal(labels, draws, WARM, COLD, points=points, targets=targets)
+        if (changed == labels).all() or problem.energy(changed) > energy + SLACK:
+            continue
+        changed = problem.descend(changed, nullable=nullable)
         reached = problem.energy(changed)
         if reached < energy - 1e-6:
             labels, energy = changed, reached
-    return labels, energy
-
-
-def doubt(
-    problem: Problem, labels: Labels, near: Labels, twin: Labels, *, nullable: bool
-) -> tuple[Labels, float, Array]:
-    """Ask of every label what else could be, and go there if it is better.
-
-    Each point is given its best other label, and each free label each point nearby, while the
-    neighbours settle anew around it; and chains of markers slide by one, where one is missing.
-
-    Returns
-    -------
-    labels, energy, margins
-        Margins (n_points,): the least rise of energy found that changes a point's label.
-    """
-    energy = problem.energy(labels)
-    for _ in range(ROUNDS):
-        margins, rivals = problem.least_changes(labels)
-        rises, slid, reached = slide(problem, labels, near, twin)
-        margins = np.minimum(margins, INTO_FREE * rises)
-        best = (reached, slid) if reached < energy - 1e-6 else None
-        tries = [(a, int(j)) for a, j in enumerate(rivals) if j >= 0]
-        for free in np.flatnonzero(problem.holders(labels) < 0):
-            held = problem.holders(labels)[near[free, 1:SLIDING]]
-            tries += [(int(a), int(free)) for a in held if a >= 0]
-        for a, j in tries:
-            changed = _settled(problem, labels, a, j, near, nullable=nullable)
-            reached = problem.energy(changed)
-            moved = changed != labels
-            same = (np.sort(changed) == np.sort(labels)).all()
-            rise = (reached - energy) * (1.0 if same else INTO_FREE)
-            margins[moved] = np.minimum(margins[moved], rise)
-            if reached < energy - 1e-6 and (best is None or reached < best[0]):
-                best = reached, changed
-        if best is None:
-            return labels, energy, margins
-        energy, labels = best[0], problem.descend(best[1], nullable=nullable)
-        energy = problem.energy(labels)
-    return labels, energy, margins
-
-
-def _settled(
-    problem: Problem, labels: Labels, a: int, j: int, near: Labels, *, nullable: bool
-) -> Labels:
-    """Return labels with point a bearing j whatever happens, its neighbours having settled."""
-    changed = labels.copy()
-    holder = problem.holders(labels)
-    old, b = labels[a], holder[j]
-    changed[a] = j
-    if b >= 0:
-        changed[b] = old
-    around = near[j, :SETTLING]
-    if old >= 0:
-        around = np.union1d(around, near[old, :SETTLING])
-    targets = around[around != j]
-    held = problem.holders(changed)[targets]
-    points = held[held >= 0]
-    return problem.descend(changed, nullable=nullable, points=points, targets=targets)
+    return labels
 
 
 def nearest_labels(mean: Array) -> Labels:

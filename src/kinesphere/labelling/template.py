@@ -130,6 +130,19 @@ def template_of(model: TopologicalModel, labels: Sequence[str] | None = None) ->
     )
 
 
+def usual_deviations(model: TopologicalModel) -> Array:
+    """Return how much every distance usually varies over time, m; (n, n) in the model's order.
+
+    NaN where the statistics know nothing.
+    """
+    template = template_of(model)
+    at = [model.labels.index(label) for label in template.labels]
+    usual = np.full((len(model.labels), len(model.labels)), np.nan)
+    std = np.maximum(np.exp(template.log_std) - DEVIATION_FLOOR, 0.0)
+    usual[np.ix_(at, at)] = template.size * np.where(np.isnan(template.mean), np.nan, std)
+    return usual
+
+
 def of_one_segment(model: TopologicalModel, labels: tuple[str, ...]) -> NDArray[np.bool_]:
     """Return which labels share a segment, as its own or shared ones, (n, n)."""
     together = np.eye(len(labels), dtype=bool)

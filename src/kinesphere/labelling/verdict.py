@@ -11,6 +11,10 @@ from kinesphere.labelling.template import LEAST_LABELS
 MARGIN = 8.0
 """Nats of energy at which a label is held 63 % sure: neighbouring pairs tell much the same, so a
 nat of energy is worth far less than one of evidence."""
+ALONE = 4
+"""Labels that may differ for a nat between two labellings to count in full; between labellings
+that have more labels different it is shared among them, for each of those costs as much by chance
+as it does alone."""
 WORST_FIT = 0.8
 """Nats a pair by which labels must fit better than nothing; right labels of other people have 1.3
 and more, points that move at random reach 0.5."""
@@ -43,11 +47,19 @@ def verdict(
             f"left and right of {name} cannot be told: {agreement:.2f} of the handedness "
             f"agrees, {LEAST_AGREEMENT} at least is needed"
         )
+    if solved.converged == 0 and not confidence.any():
+        return match.refused(
+            f"no two starts of the search ended in the same labels of {name}: longer motion, or a "
+            "model of more people, tells more"
+        )
     return match
 
 
 def confidence_of(solved: Solved, layout: Layout) -> Array:
-    """Return 0…1 for each point, by the least rise of energy that changes its label."""
+    """Return 0…1 for each point, by the least rise of energy that changes its label.
+
+    Where one start alone ended in the labels, those that another end denies have none.
+    """
     problem, labels = solved.problem, solved.labels
     margin = solved.margins.copy()
     for move in layout.moves.every:
@@ -57,5 +69,7 @@ def confidence_of(solved: Solved, layout: Layout) -> Array:
         margin[moved] = np.minimum(margin[moved], rise)
     for energy, other in solved.rivals:
         moved = other != labels
-        margin[moved] = np.minimum(margin[moved], energy - solved.energy)
+        rise = (energy - solved.energy) * min(1.0, ALONE / max(int(moved.sum()), 1))
+        rise *= solved.converged  # what one start alone ended in is hardly the best
+        margin[moved] = np.minimum(margin[moved], rise)
     return 1 - np.exp(-np.maximum(margin, 0.0) / MARGIN)

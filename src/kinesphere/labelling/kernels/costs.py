@@ -81,7 +81,7 @@ def linear_terms(labels: Indices, costs: Single) -> Array:
         if j >= 0:
             for k in range(n):
                 for i in range(m):
-                    terms[k, i] += costs[k, i, p, j]
+                    terms[k, i] += costs[p, j, k, i]  # the same as [k, i, p, j], but in one row
     return terms
 
 

@@ -73,19 +73,15 @@ def exchange(labels: Indices, holder: Indices, terms: Array, costs: Single, a: i
     """Let point a take label j (−1: none) and its holder a's label; keep ``terms`` true."""
     i = labels[a]
     b = holder[j] if j >= 0 else -1
-    n, m = costs.shape[0], costs.shape[1]
-    for k in range(n):
-        for t in range(m):
-            change = 0.0
-            if j >= 0:
-                change += costs[k, t, a, j]
-            if i >= 0:
-                change -= costs[k, t, a, i]
-            if b >= 0:
-                change -= costs[k, t, b, j]
-                if i >= 0:
-                    change += costs[k, t, b, i]
-            terms[k, t] += change
+    # costs[a, j, k, t] is costs[k, t, a, j], and the former are in one row
+    if j >= 0:
+        _add(terms, costs[a, j], 1.0)
+    if i >= 0:
+        _add(terms, costs[a, i], -1.0)
+    if b >= 0:
+        _add(terms, costs[b, j], -1.0)
+        if i >= 0:
+            _add(terms, costs[b, i], 1.0)
     labels[a] = j
     if i >= 0:
         holder[i] = b
@@ -93,3 +89,10 @@ def exchange(labels: Indices, holder: Indices, terms: Array, costs: Single, a: i
         holder[j] = a
     if b >= 0:
         labels[b] = i
+
+
+@kernel
+def _add(terms: Array, row: Single, sign: float) -> None:
+    for k in range(terms.shape[0]):
+        for t in range(terms.shape[1]):
+            terms[k, t] += sign * row[k, t]

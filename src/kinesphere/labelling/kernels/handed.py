@@ -3,7 +3,7 @@
 from kinesphere.data import Array
 from kinesphere.geometry.handedness import FULL, handedness_of
 from kinesphere.kernels.jit import kernel
-from kinesphere.labelling.kernels.types import Indices, Signs
+from kinesphere.labelling.kernels.types import Indices, Signs, Single
 
 BASE = 0.5
 """Agreement of a quadruple that earns nothing: less is a cost, more a reward. With 0 labels that
@@ -12,7 +12,7 @@ have few of them do; both measure worse where markers are missing."""
 
 
 @kernel
-def _one(holder: Indices, quads: Indices, wanted: Array, table: Signs, q: int) -> float:
+def one_quadruple(holder: Indices, quads: Indices, wanted: Array, table: Signs, q: int) -> float:
     """Return the energy of one quadruple; 0 where a label has no point."""
     a, b = holder[quads[q, 0]], holder[quads[q, 1]]
     c, d = holder[quads[q, 2]], holder[quads[q, 3]]
@@ -41,7 +41,7 @@ def handed_energy(
     """
     energy = 0.0
     for q in only:
-        energy += _one(holder, quads, wanted, table, q)
+        energy += one_quadruple(holder, quads, wanted, table, q)
     return energy
 
 
@@ -59,7 +59,7 @@ def handed_energy_without(
             or quads[q, 3] == label
         ):
             continue
-        energy += _one(holder, quads, wanted, table, q)
+        energy += one_quadruple(holder, quads, wanted, table, q)
     return energy
 
 
@@ -80,3 +80,27 @@ def room_to_agree(
         for q in only:
             room += (1 - BASE) * abs(wanted[q])
         room_of[i] = room
+
+
+@kernel
+def point_energies(
+    labels: Indices,
+    holder: Indices,
+    costs: Single,
+    quads: Indices,
+    wanted: Array,
+    table: Signs,
+    energies: Array,
+) -> None:
+    """Fill what each point takes part in, (n_points,): its pairs and its quadruples."""
+    n = labels.shape[0]
+    for k in range(n):
+        energies[k] = 0.0
+        for p in range(n):
+            if labels[k] >= 0 and labels[p] >= 0:
+                energies[k] += costs[k, labels[k], p, labels[p]]
+    for q in range(quads.shape[0]):
+        energy = one_quadruple(holder, quads, wanted, table, q)
+        if energy != 0:
+            for x in range(4):
+                energies[holder[quads[q, x]]] += energy
