@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array, Frame, Scene
 from kinesphere.markerless.cutting import cut_out_together
+from kinesphere.markerless.moving import instants_about, moved_since, place_of, rooms
 from kinesphere.markerless.pieces import largest_piece as largest_piece
 from kinesphere.markerless.views import View
 
@@ -38,13 +39,19 @@ def start_masks(scene: Scene, views: Sequence[View], frame: Frame) -> list[Pictu
             out.append(None)
     if any(mask is not None for mask in out):
         return out
-    middle = scene.start.position
-    where = looked_at(views) if middle is None else np.array(middle)
     pictures = [
         None if picture is None else view.image(picture)
         for view, picture in zip(views, frame.images, strict=True)
     ]
-    return cut_out_together(views, pictures, where)
+    moved = [
+        None if picture is None or room is None else moved_since(picture, room)
+        for picture, room in zip(
+            pictures, rooms(views, instants_about(scene, frame.index)), strict=True
+        )
+    ]
+    middle = scene.start.position
+    where = place_of(views, moved, looked_at(views)) if middle is None else np.array(middle)
+    return cut_out_together(views, pictures, where, moved)
 
 
 def plate_difference(picture: Picture, plate: Picture) -> Picture:
