@@ -33,10 +33,6 @@ _REACH = 1.25
 
 _BINS = 24
 """Of each channel, for the colours of the person and the room."""
-_WHOLE = 1.0
-"""m; what has moved is that high, or it was not the whole person."""
-_MARGIN = 0.06
-"""m about what has moved that high in which the person is."""
 _DOUBT = 2.0
 """How much more frequent in a silhouette than around it a colour of the person is."""
 _RING = 12
@@ -67,8 +63,6 @@ class _Small:
     scale: float
     moved: Mask
     """(height, width) where something has moved."""
-    bounds: Mask
-    """(height, width) beyond which the person is not."""
 
     def pixels(self, points: Array) -> Array:
         """Return where points in the world appear, (n, 2) px of the small image."""
@@ -126,12 +120,11 @@ def cut_out_together(
         [(_within(one, middle, g.maybe), _within(one, middle, g.likely)) for one in seen]
         for g in (_UPRIGHT, _LYING)
     ]
-    mover = _common(seen, [_grown(one.moved, 1) for one in seen], middle)
+    # what moves in one camera alone is somebody else, or the room
+    mover = _allowed(seen, [_grown(one.moved, 1) for one in seen], middle)
     seen = [replace(one, moved=one.moved & one.drawn(mover, 2 * _SIDE)) for one in seen]
-    if len(mover) and np.ptp(mover[:, 1]) > _WHOLE:
-        seen = [replace(one, bounds=one.drawn(mover, _SIDE + 2 * _MARGIN)) for one in seen]
-        guesses = [[_beside(one, mover) for one in seen]]
-    cut = max((_agreed(seen, middle, guess) for guess in guesses), key=lambda c: c[0])
+    cuts = [_agreed(seen, middle, guess) for guess in guesses]
+    cut = max(cuts, key=lambda c: c[0] * _held(seen, c[1]))
     left = iter(cut[1])
     return [None if one is None else _enlarged(next(left), one.view) for one in small]
 
@@ -151,13 +144,26 @@ def _agreed(
     return share, masks
 
 
+def _held(seen: Sequence[_Small], masks: Sequence[Mask]) -> float:
+    """Return what share of what has moved the silhouettes hold; 1 where nothing has."""
+    moved = sum(float(one.moved.sum()) for one in seen)
+    both = sum(float((one.moved & mask).sum()) for one, mask in zip(seen, masks, strict=True))
+    return both / moved if moved else 1.0
+
+
 def _beside(one: _Small, points: Array) -> tuple[Mask, Mask]:
     """Return where a person may be, and likely is, who fills cubes about points."""
     return one.drawn(points, _SIDE + 2 * _AROUND), one.drawn(points, _SIDE)
 
 
 def _common(seen: Sequence[_Small], masks: Sequence[Mask], middle: Array) -> Array:
-    """Return the middles of the cubes that all cameras but one allow, (n, 3) m: a piece of space.
+    """Return the largest piece of space that cameras allow, as middles of cubes, (n, 3) m."""
+    allowed = _allowed(seen, masks, middle)
+    return largest_piece_of_space(allowed, _SIDE) if len(allowed) else allowed
+
+
+def _allowed(seen: Sequence[_Small], masks: Sequence[Mask], middle: Array) -> Array:
+    """Return the middles of the cubes that all cameras but one allow, (n, 3) m.
 
     With three cameras or fewer all must allow them.
     """
@@ -171,12 +177,11 @@ def _common(seen: Sequence[_Small], masks: Sequence[Mask], middle: Array) -> Arr
         shown_by += shown
         against[shown] += ~mask[rows[shown], columns[shown]]
     most = shown_by > 3
-    allowed = points[(against <= most) & (shown_by - against > 1)]
-    return largest_piece_of_space(allowed, _SIDE) if len(allowed) else allowed
+    allowed: Array = points[(against <= most) & (shown_by - against > 1)]
+    return allowed
 
 
 def _cut(one: _Small, maybe: Mask, likely: Mask) -> Mask:
-    maybe, likely = maybe & one.bounds, likely & one.bounds
     labels = np.full(maybe.shape, cv2.GC_BGD, dtype=np.uint8)
     labels[maybe] = cv2.GC_PR_BGD
     labels[likely] = cv2.GC_PR_FGD
@@ -241,7 +246,7 @@ def _small(view: View, picture: Picture, moved: Picture | None) -> _Small:
     known = np.zeros(small.shape[:2], dtype=bool)
     if moved is not None:
         known = cv2.resize(moved, size, interpolation=cv2.INTER_AREA) > 200
-    return _Small(view, np.ascontiguousarray(small[..., ::-1]), scale, known, ~np.zeros_like(known))
+    return _Small(view, np.ascontiguousarray(small[..., ::-1]), scale, known)
 
 
 def _enlarged(mask: Mask, view: View) -> Picture:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array
+from kinesphere.errors import BadScene
 from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.hull import largest_piece_of_space
 from kinesphere.markerless.kernels.contour import NOWHERE, project_kernel
@@ -29,6 +30,17 @@ _SIDE = 0.04
 _ASIDE = 0.04
 """m beyond the model from which on a pixel is not explained by it."""
 
+_SURE_EDGES, _NO_EDGES = 0.96, 0.75
+_SURE_OVERLAP, _NO_OVERLAP = 0.86, 0.60
+_SURE_BARE = 0.5e-3
+"""m³. Starts found right and wrong on rendered films: docs/decisions.md has the table."""
+_GIVEN_OVERLAP = 0.75
+"""With masks or plates, which know nothing of the start's colours."""
+_REMEDY = (
+    "give plates of the empty room, a mask of that frame for every camera, a pose estimator's "
+    "keypoints, or the pose ([start] in docs/markerless.md)"
+)
+
 
 @dataclass(frozen=True)
 class Evidence:
@@ -41,6 +53,48 @@ class Evidence:
     bare: float
     """m³ of the largest piece of space that the silhouettes show and the model leaves bare."""
 
+    cut_out: bool
+    """Whether the silhouettes were cut out of the images, not given or told by plates."""
+
+    @property
+    def against(self) -> tuple[str, ...]:
+        """What speaks against the start, in words; nothing where it is to be believed."""
+        said = []
+        least = _SURE_OVERLAP if self.cut_out else _GIVEN_OVERLAP
+        if not self.overlap >= least:
+            said.append(f"overlap with the silhouettes {self.overlap:.2f}, less than {least:g}")
+        if self.cut_out and not self.edges >= _SURE_EDGES:
+            said.append(
+                f"edges of the image along the body's rim {self.edges:.2f}, less than {_SURE_EDGES}"
+            )
+        if self.cut_out and self.bare > _SURE_BARE:
+            said.append(f"{self.bare * 1e3:.1f} litres of somebody are left bare")
+        return tuple(said)
+
+    @property
+    def nobody(self) -> bool:
+        """Whether next to nothing speaks for the start."""
+        return self.cut_out and not (self.edges >= _NO_EDGES and self.overlap >= _NO_OVERLAP)
+
+
+def doubt_of(evidence: Evidence, frame: int) -> str:
+    """Return what is to be said of a start found in a frame, as people count; or nothing.
+
+    Raises
+    ------
+    BadScene
+        If next to nothing speaks for it.
+    """
+    if not evidence.against:
+        return ""
+    why = "; ".join(evidence.against)
+    if evidence.nobody:
+        raise BadScene(f"the person was not found in frame {frame} ({why}); {_REMEDY}")
+    return (
+        f"the start is doubtful, arms or more may be elsewhere from the first frame on ({why}): "
+        f"look at frame {frame} in the overlays; if it is wrong, {_REMEDY}"
+    )
+
 
 def evidence_of(
     fitter: Fitter,
@@ -48,6 +102,8 @@ def evidence_of(
     pictures: Sequence[Picture | None],
     masks: Sequence[Picture | None],
     overlap: float,
+    *,
+    cut_out: bool,
 ) -> Evidence:
     """Return what speaks for a start.
 
@@ -59,8 +115,11 @@ def evidence_of(
         At the views' sizes; None where a camera has none.
     overlap
         Of the model with the masks.
+    cut_out
+        Whether the masks were cut out of the pictures.
     """
-    return Evidence(_edges(fitter, pose, pictures), overlap, _bare(fitter, pose, masks))
+    edges, bare = _edges(fitter, pose, pictures), _bare(fitter, pose, masks)
+    return Evidence(edges, overlap, bare, cut_out)
 
 
 def contrast(picture: Picture) -> NDArray[np.float32]:

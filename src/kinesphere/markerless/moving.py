@@ -6,9 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array, Frame, Scene
-from kinesphere.markerless.hull import largest_piece_of_space
-from kinesphere.markerless.kernels.contour import project_kernel
+from kinesphere.data import Frame, Scene
 from kinesphere.markerless.views import View
 
 Picture = NDArray[np.uint8]
@@ -23,15 +21,6 @@ _SPECK = 2e-4
 """Share of an image below which a piece that has moved is noise."""
 _MOST = 0.3
 """Share of an image above which it is the camera or the light that has changed."""
-
-_FAR = 2.0
-"""m about the point looked at in which somebody may move."""
-_SIDE = 0.08
-"""m, of the cubes in which they are looked for."""
-_NEAR = 7
-"""px; gaps in what has moved."""
-_TALL = 1.0
-"""m; what has moved is that high, or it was not the whole person."""
 
 
 def instants_about(scene: Scene, first: int) -> list[Frame]:
@@ -50,7 +39,8 @@ def rooms(views: Sequence[View], frames: Sequence[Frame]) -> list[Picture | None
     """
     out: list[Picture | None] = []
     for i, view in enumerate(views):
-        pictures = [view.image(f.images[i]) for f in frames if f.images[i] is not None]
+        images = [f.images[i] for f in frames]
+        pictures = [view.image(picture) for picture in images if picture is not None]
         enough = len(pictures) > 2
         out.append(np.median(pictures, axis=0).astype(np.uint8) if enough else None)
     return out
@@ -72,31 +62,3 @@ def moved_since(picture: Picture, room: Picture) -> Picture:
     large[0] = False
     out = large[labels]
     return np.asarray(out * np.uint8(255 if out.mean() < _MOST else 0), dtype=np.uint8)
-
-
-def place_of(
-    views: Sequence[View], moved: Sequence[Picture | None], looked_at: Array
-) -> Array:
-    """Return about where the person's middle is, (3,) m: where all cameras see things move.
-
-    The point that the cameras look at is returned where they agree on nothing, or on arms alone.
-    """
-    axis = np.arange(-_FAR, _FAR + _SIDE, _SIDE)
-    points = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), -1).reshape(-1, 3) + looked_at
-    for_it, shown_by = np.zeros(len(points), dtype=int), np.zeros(len(points), dtype=int)
-    pixels, depths = np.empty((len(points), 2)), np.empty(len(points))
-    for view, mask in zip(views, moved, strict=True):
-        if mask is None:
-            continue
-        project_kernel(points, view.rotation, view.shift, view.lens, pixels, depths)
-        near = cv2.dilate(mask, np.ones((_NEAR, _NEAR), np.uint8)) > 0
-        col, row = np.nan_to_num(np.rint(pixels), nan=-1).clip(-1, 1e6).astype(int).T
-        shown = (row >= 0) & (row < view.height) & (col >= 0) & (col < view.width)
-        shown_by += shown
-        for_it[shown] += near[row[shown], col[shown]]
-    agreed = points[(shown_by == for_it) & (for_it >= min(3, len(views)))]
-    if len(agreed) == 0:
-        return looked_at
-    piece = largest_piece_of_space(agreed, _SIDE)
-    low, high = piece.min(axis=0), piece.max(axis=0)
-    return np.asarray(0.5 * (low + high)) if high[1] - low[1] > _TALL else looked_at

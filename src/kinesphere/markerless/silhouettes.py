@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array, Frame, Scene
 from kinesphere.markerless.cutting import cut_out_together
-from kinesphere.markerless.moving import instants_about, moved_since, place_of, rooms
+from kinesphere.markerless.moving import instants_about, moved_since, rooms
 from kinesphere.markerless.pieces import largest_piece as largest_piece
 from kinesphere.markerless.views import View
 
@@ -50,7 +50,7 @@ def start_masks(scene: Scene, views: Sequence[View], frame: Frame) -> list[Pictu
         )
     ]
     middle = scene.start.position
-    where = place_of(views, moved, looked_at(views)) if middle is None else np.array(middle)
+    where = looked_at(views) if middle is None else np.array(middle)
     return cut_out_together(views, pictures, where, moved)
 
 

@@ -67,12 +67,14 @@ def solve_scene(
     calibration, calibration_from, facing, settings, progress
         As `kinesphere.solve` takes them; of the tracker ``progress`` tells frames, not stages.
     notice
-        Told what looks wrong before tracking begins; the history has it as well.
+        Told what looks wrong before tracking begins, a doubtful start among it; the history has
+        it as well.
 
     Raises
     ------
     BadScene
-        If the scene cannot be tracked: the person is not found, or no body has that name.
+        If the scene cannot be tracked: the person is not found, or next to nothing speaks for
+        the start that is found, or no body has that name.
     BadSetting
         If the calibration window lies beyond the scene, or no facing has that name.
     DegenerateMotion, AmbiguousFacing
@@ -89,7 +91,7 @@ def solve_scene(
         for warning in (w for step in scene.history for w in step.warnings):
             notice(warning)
     with clock.stage("track"):
-        tracked = track(scene, body_of(scene), settings.tracking, progress)
+        tracked = track(scene, body_of(scene), settings.tracking, progress, notice=notice)
         step = tracking_step(tracked, tuple(camera.name for camera in scene.cameras))
         tracked = replace(tracked, history=(*tracked.history, *_reading(scene), step))
         measured = with_first_frame(motion_from_tracked(tracked), scene)
