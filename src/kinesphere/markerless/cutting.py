@@ -17,6 +17,7 @@ from kinesphere.markerless.hull import largest_piece_of_space
 from kinesphere.markerless.kernels.contour import project_kernel
 from kinesphere.markerless.pieces import largest_piece
 from kinesphere.markerless.views import View
+from kinesphere.markerless.walls import grown, without_room
 
 Picture = NDArray[np.uint8]
 
@@ -30,15 +31,6 @@ _AROUND = 0.2
 """m about what is agreed on that may be the person's."""
 _REACH = 1.25
 """m about the middle in which a person may be."""
-
-_BINS = 24
-"""Of each channel, for the colours of the person and the room."""
-_DOUBT = 2.0
-"""How much more frequent in a silhouette than around it a colour of the person is."""
-_RING = 12
-"""px around a silhouette whose colours are the room's."""
-_SORTED = 3
-"""Times the colours are told apart, each with what was left."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +113,7 @@ def cut_out_together(
         for g in (_UPRIGHT, _LYING)
     ]
     # what moves in one camera alone is somebody else, or the room
-    mover = _allowed(seen, [_grown(one.moved, 1) for one in seen], middle)
+    mover = _allowed(seen, [grown(one.moved, 1) for one in seen], middle)
     seen = [replace(one, moved=one.moved & one.drawn(mover, 2 * _SIDE)) for one in seen]
     cuts = [_agreed(seen, middle, guess) for guess in guesses]
     cut = max(cuts, key=lambda c: c[0] * _held(seen, c[1]))
@@ -191,35 +183,7 @@ def _cut(one: _Small, maybe: Mask, likely: Mask) -> Mask:
     cv2.setRNGSeed(0)  # GrabCut draws its first clusters at random
     models = np.zeros((1, 65)), np.zeros((1, 65))
     cv2.grabCut(one.bgr, labels, [0, 0, 1, 1], *models, 5, cv2.GC_INIT_WITH_MASK)
-    return _without_room(one, (labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD))
-
-
-def _without_room(one: _Small, person: Mask) -> Mask:
-    """Return a silhouette without the wall that shows between arm and trunk.
-
-    By its colours, more frequent around the silhouette than in it; single pixels are left.
-    """
-    around = _grown(person, _RING) & ~person
-    left = person
-    for _ in range(_SORTED):
-        if not around.any() or not left.any():
-            return person
-        counts = [
-            cv2.calcHist([one.bgr], [0, 1, 2], of.astype(np.uint8), [_BINS] * 3, [0, 256] * 3)
-            for of in (left, around)
-        ]
-        shares = [c / c.sum() for c in counts]
-        bins = one.bgr.astype(np.intp) * _BINS // 256
-        own, theirs = (s[bins[..., 0], bins[..., 1], bins[..., 2]] for s in shares)
-        wall = (person & (_DOUBT * theirs > own) & ~one.moved).astype(np.uint8)
-        wall = cv2.morphologyEx(wall, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
-        left = person & (wall == 0)
-    return left
-
-
-def _grown(mask: Mask, reach: int) -> Mask:
-    kernel = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
-    return np.asarray(cv2.dilate(mask.astype(np.uint8), kernel) > 0)
+    return without_room(one.bgr, (labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD), one.moved)
 
 
 def _within(one: _Small, middle: Array, cylinder: tuple[float, float, float]) -> Mask:

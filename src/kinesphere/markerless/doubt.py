@@ -18,6 +18,7 @@ from kinesphere.markerless.fit import Fitter
 from kinesphere.markerless.hull import largest_piece_of_space
 from kinesphere.markerless.kernels.contour import NOWHERE, project_kernel
 from kinesphere.markerless.pose import Pose, posed
+from kinesphere.markerless.silhouettes import Silhouettes
 
 Picture = NDArray[np.uint8]
 
@@ -55,6 +56,8 @@ class Evidence:
 
     cut_out: bool
     """Whether the silhouettes were cut out of the images, not given or told by plates."""
+    moved: bool = True
+    """Whether something moved about the frame, so that bare arms are in them."""
 
     @property
     def against(self) -> tuple[str, ...]:
@@ -69,6 +72,8 @@ class Evidence:
             )
         if self.cut_out and self.bare > _SURE_BARE:
             said.append(f"{self.bare * 1e3:.1f} litres of somebody are left bare")
+        if self.cut_out and not self.moved:
+            said.append("nothing moves about that frame: bare arms may have been missed")
         return tuple(said)
 
     @property
@@ -100,10 +105,8 @@ def evidence_of(
     fitter: Fitter,
     pose: Pose,
     pictures: Sequence[Picture | None],
-    masks: Sequence[Picture | None],
+    shown: Silhouettes,
     overlap: float,
-    *,
-    cut_out: bool,
 ) -> Evidence:
     """Return what speaks for a start.
 
@@ -111,15 +114,15 @@ def evidence_of(
     ----------
     fitter
         Of the body as it was found.
-    pictures, masks
+    pictures
         At the views' sizes; None where a camera has none.
+    shown
+        The silhouettes in which it was found.
     overlap
-        Of the model with the masks.
-    cut_out
-        Whether the masks were cut out of the pictures.
+        Of the model with them.
     """
-    edges, bare = _edges(fitter, pose, pictures), _bare(fitter, pose, masks)
-    return Evidence(edges, overlap, bare, cut_out)
+    edges, bare = _edges(fitter, pose, pictures), _bare(fitter, pose, shown.masks)
+    return Evidence(edges, overlap, bare, shown.cut_out, shown.moved)
 
 
 def contrast(picture: Picture) -> NDArray[np.float32]:

@@ -85,12 +85,12 @@ def first_pose(
             return FirstPose(pose, seen.logs, float("nan"), "keypoints", seen.warnings)
     whole = fitter_for(full_body(shaped(surface, logs)), scene.cameras, settings, masks=True)
     views = [eye.canvas.view for eye in whole.eyes]
-    masks = start_masks(scene, views, frame)
+    shown = start_masks(scene, views, frame)
     found = find_start(
         whole,
         surface,
         full_body,
-        masks,
+        shown.masks,
         position=None if start.position is None else np.array(start.position),
         heading=None if start.facing is None else np.array(start.facing),
         arms="standing" if start.pose == "auto" else start.pose,
@@ -104,10 +104,7 @@ def first_pose(
         None if picture is None else view.image(picture)
         for view, picture in zip(views, frame.images, strict=True)
     ]
-    known = any(m is not None for m in frame.masks) or any(p is not None for p in scene.plates)
     body = full_body(shaped(surface, found.logs))
-    evidence = evidence_of(
-        with_body(whole, body), found.pose, pictures, masks, overlap, cut_out=not known
-    )
+    evidence = evidence_of(with_body(whole, body), found.pose, pictures, shown, overlap)
     doubt = doubt_of(evidence, frame.index + scene.first_frame + 1)
     return FirstPose(pose, found.logs, overlap, "silhouettes", doubts, evidence, doubt)

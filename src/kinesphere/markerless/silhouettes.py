@@ -1,6 +1,7 @@
 """Silhouettes to begin with: given masks, a plate's difference, or cut out around a guess."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -16,10 +17,24 @@ Picture = NDArray[np.uint8]
 
 _SHADOW = (0.6, 1.25)
 """How much darker or brighter than on the plate the same thing may be."""
+_MOVED_IN = 2
+"""Cameras that must see something move."""
 
 
-def start_masks(scene: Scene, views: Sequence[View], frame: Frame) -> list[Picture | None]:
-    """Return silhouettes of one instant in the views, 0 to 255; None where there is none.
+@dataclass(frozen=True, eq=False)
+class Silhouettes:
+    """What a start is looked for in."""
+
+    masks: list[Picture | None]
+    """0 to 255 at the views' sizes; None where there is none."""
+    cut_out: bool = False
+    """Whether they were cut out of the images, not given or told by plates."""
+    moved: bool = True
+    """Whether two cameras saw something move, which tells of bare arms; of those cut out."""
+
+
+def start_masks(scene: Scene, views: Sequence[View], frame: Frame) -> Silhouettes:
+    """Return silhouettes of one instant in the views.
 
     Given masks before plates, plates before cutting the person out of the image itself.
     """
@@ -38,7 +53,7 @@ def start_masks(scene: Scene, views: Sequence[View], frame: Frame) -> list[Pictu
         else:
             out.append(None)
     if any(mask is not None for mask in out):
-        return out
+        return Silhouettes(out)
     pictures = [
         None if picture is None else view.image(picture)
         for view, picture in zip(views, frame.images, strict=True)
@@ -51,7 +66,9 @@ def start_masks(scene: Scene, views: Sequence[View], frame: Frame) -> list[Pictu
     ]
     middle = scene.start.position
     where = looked_at(views) if middle is None else np.array(middle)
-    return cut_out_together(views, pictures, where, moved)
+    by = sum(mask is not None and bool(mask.any()) for mask in moved)
+    masks = cut_out_together(views, pictures, where, moved)
+    return Silhouettes(masks, cut_out=True, moved=by >= _MOVED_IN)
 
 
 def plate_difference(picture: Picture, plate: Picture) -> Picture:
