@@ -73,7 +73,8 @@ def _row(case: Case, all_seeds: Sequence[Outcome]) -> str:
     failed = [o for o in all_seeds if o.errors is None]
     note = _verdict(any(o.missed for o in all_seeds)) if case.limited else "none set"
     if case.to_fail:
-        note = f"passed in {sum(o.fails for o in all_seeds)} of {len(all_seeds)} seeds"
+        n = sum(o.fails for o in all_seeds)
+        note = f"**fails** on {n} of {len(all_seeds)} seeds, as it is to show"
     if failed:
         note = f"{len(failed)} not tracked: {failed[0].failed}"
     start = "given" if case.given else f"found by {case.by}" if case.by else "found"
