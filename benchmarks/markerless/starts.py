@@ -32,13 +32,16 @@ PAGE = Path(__file__).parents[2] / "docs" / "results" / "markerless-starts.md"
 KEPT = Path(__file__).parents[1] / "results" / "markerless-starts.json"
 N_FRAMES = 300
 FILMS = (
-    *(("push-ups", "plain", 4, seed) for seed in (1, 11, 28, 29)),
+    *(("push-ups", "plain", 4, seed) for seed in (1, 11, 28)),
     *(("turn", "plain", 4, seed) for seed in (2, 27)),
-    *(("arms", "plain", 4, seed) for seed in (3, 5, 9, 10, 12, 13, 21, 22, 23)),
-    *(("body", "plain", 4, seed) for seed in (1, 2, 24, 25)),
-    *(("turn", "plain", 3, seed) for seed in (1, 26)),
-    *(("arms", "clutter", 4, seed) for seed in (1, 2)),
-    *(("arms", "plain", 4, seed) for seed in (14, 16, 17)),
+    *(("arms", "plain", 4, seed) for seed in (5, 12, 13, 21)),
+    *(("body", "plain", 4, seed) for seed in (1, 25)),
+    *(("turn", "plain", 3, seed) for seed in (1,)),
+    *(("arms", "clutter", 4, seed) for seed in (1,)),
+    *(("arms", "plain", 4, seed) for seed in (3, 9, 10, 22)),
+    *(("body", "plain", 4, seed) for seed in (24,)),
+    *(("turn", "plain", 3, seed) for seed in (26,)),
+    *(("arms", "plain", 4, seed) for seed in (23,)),
 )
 """Movement, conditions, cameras, seed."""
 
@@ -172,10 +175,14 @@ def main() -> int:
         silent |= not one.right and not one.said
         kept[one.film, one.seed] = one
         write_json([asdict(o) for o in kept.values()], KEPT)
-    order = [(f"{m}, {c}, {n} cameras", seed) for m, c, n, seed in FILMS]
+        _write_page(kept)
+    return int(silent)
+
+
+def _write_page(kept: dict[tuple[str, int], StartOutcome]) -> None:
+    order = sorted((f"{m}, {c}, {n} cameras", seed) for m, c, n, seed in FILMS)
     with replacing(PAGE) as partial:
         partial.write_text(page([kept[key] for key in order if key in kept]), encoding="utf-8")
-    return int(silent)
 
 
 if __name__ == "__main__":

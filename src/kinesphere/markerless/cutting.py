@@ -29,6 +29,9 @@ _SIDE = 0.04
 """m, of the cubes of space they agree on."""
 _AROUND = 0.2
 """m about what is agreed on that may be the person's."""
+_TRUE = 0.85
+"""Share of what has moved that must be cut out with the person for all of it to be the person's:
+0.93 where arms move before a room, 0.55 to 0.73 where the median of the images shows the person."""
 _REACH = 1.25
 """m about the middle in which a person may be."""
 
@@ -55,6 +58,8 @@ class _Small:
     scale: float
     moved: Mask
     """(height, width) where something has moved."""
+    sure: Mask
+    """(height, width) the person's beyond doubt."""
 
     def pixels(self, points: Array) -> Array:
         """Return where points in the world appear, (n, 2) px of the small image."""
@@ -115,10 +120,19 @@ def cut_out_together(
     # what moves in one camera alone is somebody else, or the room
     mover = _allowed(seen, [grown(one.moved, 1) for one in seen], middle)
     seen = [replace(one, moved=one.moved & one.drawn(mover, 2 * _SIDE)) for one in seen]
-    cuts = [_agreed(seen, middle, guess) for guess in guesses]
-    cut = max(cuts, key=lambda c: c[0] * _held(seen, c[1]))
+    cut = _best(seen, middle, guesses)
+    if _held(seen, cut[1]) > _TRUE:
+        cut = _best([replace(one, sure=one.moved) for one in seen], middle, guesses)
     left = iter(cut[1])
     return [None if one is None else _enlarged(next(left), one.view) for one in small]
+
+
+def _best(
+    seen: Sequence[_Small], middle: Array, guesses: Sequence[Sequence[tuple[Mask, Mask]]]
+) -> tuple[float, list[Mask]]:
+    """Return the silhouettes, of those from each guess, that agree best and hold what moves."""
+    cuts = [_agreed(seen, middle, guess) for guess in guesses]
+    return max(cuts, key=lambda cut: cut[0] * _held(seen, cut[1]))
 
 
 def _agreed(
@@ -176,14 +190,14 @@ def _allowed(seen: Sequence[_Small], masks: Sequence[Mask], middle: Array) -> Ar
 def _cut(one: _Small, maybe: Mask, likely: Mask) -> Mask:
     labels = np.full(maybe.shape, cv2.GC_BGD, dtype=np.uint8)
     labels[maybe] = cv2.GC_PR_BGD
-    labels[likely] = cv2.GC_PR_FGD
-    labels[maybe & one.moved] = cv2.GC_FGD
+    labels[likely | (maybe & one.moved)] = cv2.GC_PR_FGD
+    labels[maybe & one.sure] = cv2.GC_FGD
     if not likely.any() or not (labels == cv2.GC_BGD).any():
         return np.zeros(maybe.shape, dtype=bool)
     cv2.setRNGSeed(0)  # GrabCut draws its first clusters at random
     models = np.zeros((1, 65)), np.zeros((1, 65))
     cv2.grabCut(one.bgr, labels, [0, 0, 1, 1], *models, 5, cv2.GC_INIT_WITH_MASK)
-    return without_room(one.bgr, (labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD), one.moved)
+    return without_room(one.bgr, (labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD), one.sure)
 
 
 def _within(one: _Small, middle: Array, cylinder: tuple[float, float, float]) -> Mask:
@@ -210,7 +224,7 @@ def _small(view: View, picture: Picture, moved: Picture | None) -> _Small:
     known = np.zeros(small.shape[:2], dtype=bool)
     if moved is not None:
         known = cv2.resize(moved, size, interpolation=cv2.INTER_AREA) > 200
-    return _Small(view, np.ascontiguousarray(small[..., ::-1]), scale, known)
+    return _Small(view, np.ascontiguousarray(small[..., ::-1]), scale, known, np.zeros_like(known))
 
 
 def _enlarged(mask: Mask, view: View) -> Picture:
