@@ -121,7 +121,7 @@ def cut_out_together(
     mover = _allowed(seen, [grown(one.moved, 1) for one in seen], middle)
     seen = [replace(one, moved=one.moved & one.drawn(mover, 2 * _SIDE)) for one in seen]
     cut = _best(seen, middle, guesses)
-    if _held(seen, cut[1]) > _TRUE:
+    if any(one.moved.any() for one in seen) and _held(seen, cut[1]) > _TRUE:
         cut = _best([replace(one, sure=one.moved) for one in seen], middle, guesses)
     left = iter(cut[1])
     return [None if one is None else _enlarged(next(left), one.view) for one in small]
