@@ -173,6 +173,17 @@ def test_interrupted_it_keeps_what_it_has(motion, film, shots):
     assert "interrupted after 6 of 10 frames" in tracked.history[-1].warnings[0]
 
 
+def test_a_doubtful_start_is_said_at_once_and_first(motion, film, shots):
+    said = []
+    start = replace(near_truth(motion, 0), doubt="an arm may be elsewhere", warnings=("else",))
+    few = scene_of(film, shots[:2])
+    tracked = track(few, bundled_body(), QUICK, start=start, notice=said.append)
+    assert said == ["an arm may be elsewhere"]
+    assert tracked.start_doubt == said[0]
+    assert tracked.history[-1].warnings[:2] == (said[0], "else")
+    assert motion.start_doubt == ""
+
+
 def test_interrupted_before_anything_was_found_it_stops(motion, film, shots):
     scene = replace(scene_of(film, shots), footage=Stopping(shots, 0))
     with pytest.raises(KeyboardInterrupt):

@@ -93,10 +93,11 @@ def _scene_checks(found: dict[str, Any], _: dict[str, Any]) -> str:
 
 
 def _track(found: dict[str, Any], _: dict[str, Any]) -> str:
-    return f"{found.get('model')} body, {found.get('method')} method, start: {found.get('start')}"
+    text = f"{found.get('model')} body, {found.get('method')} method, start: {found.get('start')}"
+    return text + (", doubtful" if found.get("start_doubt") else "")
 
 
-def _tracking_result(found: dict[str, Any], _: dict[str, Any]) -> str:
+def _tracking_result(found: dict[str, Any], summary: dict[str, Any]) -> str:
     overlap = found.get("overlap_mean")
     lost = {k: n for k, n in found.get("frames_lost_of_limb", {}).items() if n}
     text = f"{found.get('n_solved')} of {found.get('n_frames')} frames"
@@ -106,7 +107,11 @@ def _tracking_result(found: dict[str, Any], _: dict[str, Any]) -> str:
         worst = max(lost, key=lambda name: lost[name])
         frames = counted(lost[worst], "frame")
         return text + f"; {counted(len(lost), 'limb')} lost at times, most {worst} ({frames})"
-    return text + "; no limb lost"
+    stages = summary.get("stages", ())
+    doubted = any(stage["findings"].get("start_doubt") for stage in stages)
+    return text + (
+        "; no limb held lost, but the start is doubtful" if doubted else "; no limb lost"
+    )
 
 
 def _editing(found: dict[str, Any], _: dict[str, Any]) -> str:

@@ -80,7 +80,7 @@ def track(
         raise BadArgument("--calibration and --calibration-from exclude each other; give one")
     span = calibration_from_text(calibration)
 
-    from kinesphere.cli.console import print_json, progress_bar, stdout
+    from kinesphere.cli.console import print_json, print_warnings, progress_bar, stdout
     from kinesphere.cli.describe_solution import describe_solution, show_solution
     from kinesphere.cli.files import REPORT, read_solved
     from kinesphere.io import check_solution_place
@@ -116,6 +116,8 @@ def track(
     if as_json:
         print_json(summary)
     else:
+        if found.tracked.start_doubt:
+            print_warnings(stdout(), [found.tracked.start_doubt])
         show_solution(summary, solution)
         show_tracking(summary["tracking"])
         stdout().print(f"\nReport: {report}", soft_wrap=True)

@@ -10,7 +10,8 @@ from kinesphere.data.surface import Surface
 from kinesphere.errors import BadScene
 from kinesphere.markerless.anatomy import full_body
 from kinesphere.markerless.body import Body
-from kinesphere.markerless.eyes import fitter_for
+from kinesphere.markerless.doubt import Evidence, doubt_of, evidence_of
+from kinesphere.markerless.eyes import fitter_for, with_body
 from kinesphere.markerless.keypoint_start import UnusableKeypoints, pose_from_keypoints
 from kinesphere.markerless.pose import Pose
 from kinesphere.markerless.settings import TrackSettings
@@ -33,6 +34,10 @@ class FirstPose:
     """``given``, ``keypoints`` or ``silhouettes``."""
     warnings: tuple[str, ...] = ()
     """What is to be said about it, a sentence each."""
+    evidence: Evidence | None = None
+    """What speaks for it, where it was found by silhouettes."""
+    doubt: str = ""
+    """Why it may be wrong; nothing where it is to be believed."""
 
 
 def first_pose(
@@ -47,7 +52,8 @@ def first_pose(
     Raises
     ------
     BadScene
-        If given values name no parameter of the model, or the silhouettes show nobody.
+        If given values name no parameter of the model, the silhouettes show nobody, or next to
+        nothing speaks for what was found in them.
     """
     logs = np.zeros(len(FACTORS))
     if scene.body.height is not None:
@@ -68,22 +74,23 @@ def first_pose(
     doubts: tuple[str, ...] = ()
     if start.keypoints is not None:
         try:
-            known = pose_from_keypoints(scene, surface, logs, settings, sizes=fit)
+            seen = pose_from_keypoints(scene, surface, logs, settings, sizes=fit)
         except UnusableKeypoints as error:
             doubts = (f"the keypoints are not used, but the images: {error}",)
         else:
-            pose = known.pose
+            pose = seen.pose
             if model is not full_body:
-                source = full_body(shaped(surface, known.logs)).chain
-                pose = taken_over(source, pose, model(shaped(surface, known.logs)).chain)
-            return FirstPose(pose, known.logs, float("nan"), "keypoints", known.warnings)
+                source = full_body(shaped(surface, seen.logs)).chain
+                pose = taken_over(source, pose, model(shaped(surface, seen.logs)).chain)
+            return FirstPose(pose, seen.logs, float("nan"), "keypoints", seen.warnings)
     whole = fitter_for(full_body(shaped(surface, logs)), scene.cameras, settings, masks=True)
     views = [eye.canvas.view for eye in whole.eyes]
+    shown = start_masks(scene, views, frame)
     found = find_start(
         whole,
         surface,
         full_body,
-        start_masks(scene, views, frame),
+        shown.masks,
         position=None if start.position is None else np.array(start.position),
         heading=None if start.facing is None else np.array(start.facing),
         arms="standing" if start.pose == "auto" else start.pose,
@@ -93,4 +100,11 @@ def first_pose(
     target = model(shaped(surface, found.logs)).chain
     pose = found.pose if model is full_body else taken_over(source, found.pose, target)
     overlap = float(np.nanmean(found.overlap))
-    return FirstPose(pose, found.logs, overlap, "silhouettes", doubts)
+    pictures = [
+        None if picture is None else view.image(picture)
+        for view, picture in zip(views, frame.images, strict=True)
+    ]
+    body = full_body(shaped(surface, found.logs))
+    evidence = evidence_of(with_body(whole, body), found.pose, pictures, shown, overlap)
+    doubt = doubt_of(evidence, frame.index + scene.first_frame + 1)
+    return FirstPose(pose, found.logs, overlap, "silhouettes", doubts, evidence, doubt)

@@ -1,6 +1,7 @@
 """Silhouettes to begin with: given masks, a plate's difference, or cut out around a guess."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array, Frame, Scene
 from kinesphere.markerless.cutting import cut_out_together
+from kinesphere.markerless.moving import instants_about, moved_since, rooms
 from kinesphere.markerless.pieces import largest_piece as largest_piece
 from kinesphere.markerless.views import View
 
@@ -15,10 +17,24 @@ Picture = NDArray[np.uint8]
 
 _SHADOW = (0.6, 1.25)
 """How much darker or brighter than on the plate the same thing may be."""
+_MOVED_IN = 2
+"""Cameras that must see something move."""
 
 
-def start_masks(scene: Scene, views: Sequence[View], frame: Frame) -> list[Picture | None]:
-    """Return silhouettes of one instant in the views, 0 to 255; None where there is none.
+@dataclass(frozen=True, eq=False)
+class Silhouettes:
+    """What a start is looked for in."""
+
+    masks: list[Picture | None]
+    """0 to 255 at the views' sizes; None where there is none."""
+    cut_out: bool = False
+    """Whether they were cut out of the images, not given or told by plates."""
+    moved: bool = True
+    """Whether two cameras saw something move, which tells of bare arms; of those cut out."""
+
+
+def start_masks(scene: Scene, views: Sequence[View], frame: Frame) -> Silhouettes:
+    """Return silhouettes of one instant in the views.
 
     Given masks before plates, plates before cutting the person out of the image itself.
     """
@@ -37,14 +53,22 @@ def start_masks(scene: Scene, views: Sequence[View], frame: Frame) -> list[Pictu
         else:
             out.append(None)
     if any(mask is not None for mask in out):
-        return out
-    middle = scene.start.position
-    where = looked_at(views) if middle is None else np.array(middle)
+        return Silhouettes(out)
     pictures = [
         None if picture is None else view.image(picture)
         for view, picture in zip(views, frame.images, strict=True)
     ]
-    return cut_out_together(views, pictures, where)
+    moved = [
+        None if picture is None or room is None else moved_since(picture, room)
+        for picture, room in zip(
+            pictures, rooms(views, instants_about(scene, frame.index)), strict=True
+        )
+    ]
+    middle = scene.start.position
+    where = looked_at(views) if middle is None else np.array(middle)
+    by = sum(mask is not None and bool(mask.any()) for mask in moved)
+    masks = cut_out_together(views, pictures, where, moved)
+    return Silhouettes(masks, cut_out=True, moved=by >= _MOVED_IN)
 
 
 def plate_difference(picture: Picture, plate: Picture) -> Picture:

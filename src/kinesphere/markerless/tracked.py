@@ -13,6 +13,9 @@ CHECKS = "scene checks"
 CULPRIT = "wrong_camera"
 """Where that step names the camera that does not fit the others."""
 
+DOUBT = "start_doubt"
+"""Where the step ``track`` says why its start may be wrong; empty where it may be believed."""
+
 
 class PosedBody(Protocol):
     """A body model as drawing and reports need it."""
@@ -83,6 +86,11 @@ class TrackedMotion:
         """(n_frames, n_cameras) as ``overlap``, NaN where no mask was given."""
         given = np.zeros(self.overlap.shape, dtype=bool) if self.by_mask is None else self.by_mask
         return np.where(given, self.overlap, np.nan)
+
+    @property
+    def start_doubt(self) -> str:
+        """Why the first pose may be wrong, and with it all; empty where it may be believed."""
+        return next((str(s.findings[DOUBT]) for s in self.history if s.findings.get(DOUBT)), "")
 
     @property
     def joint_centres(self) -> Array:

@@ -25,7 +25,7 @@ from kinesphere.markerless.settings import TrackSettings
 from kinesphere.markerless.shape import found_shape, shaped
 from kinesphere.markerless.shape_fit import fit_shape
 from kinesphere.markerless.sizes import with_best_size
-from kinesphere.markerless.tracked import TrackedMotion
+from kinesphere.markerless.tracked import DOUBT, TrackedMotion
 from kinesphere.markerless.tracking import Tracking
 from kinesphere.markerless.watching import backwards, masks_throughout, pictures_of
 
@@ -42,6 +42,7 @@ def track(
     settings: TrackSettings | None = None,
     progress: Progress | None = None,
     start: FirstPose | None = None,
+    notice: Callable[[str], None] | None = None,
 ) -> TrackedMotion:
     """Follow one person through a scene (Rosenhahn et al. 2006, and what came after).
 
@@ -58,6 +59,8 @@ def track(
     progress
     start
         The pose in the first frame, if it is known; else it is found.
+    notice
+        Told at once why a start that was found may be wrong.
 
     Returns
     -------
@@ -86,6 +89,8 @@ def track(
     say("start", 0, 1)
     opening = scene.frame(first)
     start = start or first_pose(scene, surface, model, settings, opening)
+    if start.doubt and notice is not None:
+        notice(start.doubt)
     if start.how == "given" and scene.body.fit and scene.body.height is None:
         pictures = pictures_of(opening, masks)
         start = with_best_size(
@@ -133,8 +138,10 @@ def track(
         findings={
             **found_shape(logs),
             "start_overlap": None if np.isnan(start.overlap) else float(start.overlap),
+            "start_edges": None if start.evidence is None else start.evidence.edges,
+            DOUBT: start.doubt,
         },
-        warnings=(*start.warnings, *account.warnings()),
+        warnings=(*([start.doubt] if start.doubt else []), *start.warnings, *account.warnings()),
     )
     fitted = replace(shaped(surface, logs), shapes=())
     return account.tracked((*scene.history, step), fitted)

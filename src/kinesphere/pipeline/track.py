@@ -68,14 +68,16 @@ def solve_scene(
     calibration, calibration_from, facing, settings, progress
         As `kinesphere.solve` takes them; of the tracker ``progress`` tells frames, not stages.
     notice
-        Told what looks wrong before tracking begins; the history has it as well.
+        Told what looks wrong before tracking begins, a doubtful start among it; the history has
+        it as well.
     after_tracking
         Called when tracking has ended: what comes is short, and interrupting it loses all.
 
     Raises
     ------
     BadScene
-        If the scene cannot be tracked: the person is not found, or no body has that name.
+        If the scene cannot be tracked: the person is not found, or next to nothing speaks for
+        the start that is found, or no body has that name.
     BadSetting
         If the calibration window lies beyond the scene, or no facing has that name.
     DegenerateMotion, AmbiguousFacing
@@ -92,7 +94,7 @@ def solve_scene(
         for warning in (w for step in scene.history for w in step.warnings):
             notice(warning)
     with clock.stage("track"):
-        tracked = track(scene, body_of(scene), settings.tracking, progress)
+        tracked = track(scene, body_of(scene), settings.tracking, progress, notice=notice)
         if after_tracking is not None:
             after_tracking()
         step = tracking_step(tracked, tuple(camera.name for camera in scene.cameras))

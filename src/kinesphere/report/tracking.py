@@ -66,6 +66,7 @@ def tracking_section(
                 }
                 for i, name in enumerate(tracked.limb_names)
             ],
+            doubt=tracked.start_doubt,
             n_frames=tracked.n_frames,
             n_solved=int(tracked.solved.sum()),
             seconds=[(k, f"{v:.1f}") for k, v in tracked.seconds.items()],
