@@ -15,6 +15,8 @@ STRAIGHT_SHARE = 0.05
 LIMB_AS_WAY = 0.1
 """What a limb's direction counts in the plane of flexion, as a way of so many lengths: enough to
 complete short ways, too little to tilt long ones."""
+FLAT = 0.25
+"""Most scatter across a plane of flexion, as a share of that along its lesser direction."""
 UPRIGHT = np.cos(np.deg2rad(30.0))
 """Least cosine between a trunk and the vertical for the world's up to be the body's."""
 
@@ -73,8 +75,11 @@ def right_from_bending(along: Array, seen: Array, sign: float, flexed: float) ->
 
     Markers on one side of a joint make a straight knee look bent sideways, by 20° and more where
     those of the thigh are lateral and those of the shank in front. The ways that markers have come
-    since the hinge was straightest lie in the plane of flexion wherever they sit. A short way has
-    one direction alone; the limb itself is the other, which its far marker tells to 7 to 10°.
+    since the hinge was straightest lie in the plane of flexion wherever they sit. Ways may have one
+    direction alone, across the limb where they are short, along it about a knee that stays bent by
+    90°; the directions of both limbs complete them, which far markers tell to 7 to 15°. Which way
+    the hinge turned, from its straightest, tells right from left: where the limb beyond lies tells
+    it only of straight limbs, as more than 90° of flexion bring it forwards again.
 
     Parameters
     ----------
@@ -87,22 +92,30 @@ def right_from_bending(along: Array, seen: Array, sign: float, flexed: float) ->
     flexed
         rad, what a marker must have turned since.
     """
-    ways = np.full(seen.shape, np.nan)
+    ways, turns = np.full(seen.shape, np.nan), np.full(seen.shape, np.nan)
+    straights = []
     for i, marker in enumerate(np.moveaxis(seen, 1, 0)):
         reach = marker @ along
         if not np.isfinite(reach).any():
             continue
         straight = median_seen(marker[reach >= np.nanquantile(reach, 1 - STRAIGHT_SHARE)])
-        way = (marker - straight) / np.linalg.norm(straight)
+        length = np.linalg.norm(straight)
+        way = (marker - straight) / length
         turned = np.linalg.norm(way, axis=1) > 2 * np.sin(flexed / 2)
         ways[turned, i] = way[turned]
-    rough = right_from_hinge(sign * np.cross(along, mean_seen(ways, axis=1)))
-    if rough is None:
-        return None
+        turns[turned, i] = np.cross(straight / length, way[turned])
+        straights.append(straight / length)
     known = ways[np.isfinite(ways).all(axis=2)]
-    spread = known.T @ known / len(known) + LIMB_AS_WAY**2 * np.outer(along, along)
-    normal = np.linalg.eigh(spread)[1][:, 0]
-    return np.asarray(normal * np.sign(normal @ rough))
+    if not len(known):
+        return None
+    spread = known.T @ known / len(known)
+    for limb in (along, mean_seen(np.array(straights))):
+        spread = spread + LIMB_AS_WAY**2 * np.outer(limb, limb)
+        values, axes = np.linalg.eigh(spread)
+        if values[0] < FLAT * values[1]:
+            about = sign * mean_seen(turns, axis=1) @ axes[:, 0]
+            return right_from_hinge(about[:, None] * axes[:, 0])
+    return None
 
 
 def up_of_trunk(body: Body, towards_head: Array) -> Array:
