@@ -75,11 +75,11 @@ def right_from_bending(along: Array, seen: Array, sign: float, flexed: float) ->
 
     Markers on one side of a joint make a straight knee look bent sideways, by 20° and more where
     those of the thigh are lateral and those of the shank in front. The ways that markers have come
-    since the hinge was straightest lie in the plane of flexion wherever they sit. Ways may have one
-    direction alone, across the limb where they are short, along it about a knee that stays bent by
-    90°; the directions of both limbs complete them, which far markers tell to 7 to 15°. Which way
-    the hinge turned, from its straightest, tells right from left: where the limb beyond lies tells
-    it only of straight limbs, as more than 90° of flexion bring it forwards again.
+    since the hinge was straightest lie in the plane of flexion wherever they sit. A short way has
+    one direction alone; the limb itself is the other, which its far marker tells to 7 to 10°: where
+    ways go along the limb, about a knee that stays bent by 90°, no plane is told. The way in which
+    markers turned from the straightest tells right from left; how far behind the limb they came
+    does not: beyond 90° they come forwards again.
 
     Parameters
     ----------
@@ -92,30 +92,36 @@ def right_from_bending(along: Array, seen: Array, sign: float, flexed: float) ->
     flexed
         rad, what a marker must have turned since.
     """
-    ways, turns = np.full(seen.shape, np.nan), np.full(seen.shape, np.nan)
-    straights = []
-    for i, marker in enumerate(np.moveaxis(seen, 1, 0)):
-        reach = marker @ along
-        if not np.isfinite(reach).any():
-            continue
-        straight = median_seen(marker[reach >= np.nanquantile(reach, 1 - STRAIGHT_SHARE)])
-        length = np.linalg.norm(straight)
-        way = (marker - straight) / length
-        turned = np.linalg.norm(way, axis=1) > 2 * np.sin(flexed / 2)
-        ways[turned, i] = way[turned]
-        turns[turned, i] = np.cross(straight / length, way[turned])
-        straights.append(straight / length)
+    straight = straightest(along, seen)
+    length = np.linalg.norm(straight, axis=1)[:, None]
+    ways = (seen - straight) / length
+    turned = np.linalg.norm(ways, axis=2) > 2 * np.sin(flexed / 2)
+    ways = np.where(turned[..., None], ways, np.nan)
     known = ways[np.isfinite(ways).all(axis=2)]
     if not len(known):
         return None
-    spread = known.T @ known / len(known)
-    for limb in (along, mean_seen(np.array(straights))):
-        spread = spread + LIMB_AS_WAY**2 * np.outer(limb, limb)
-        values, axes = np.linalg.eigh(spread)
-        if values[0] < FLAT * values[1]:
-            about = sign * mean_seen(turns, axis=1) @ axes[:, 0]
-            return right_from_hinge(about[:, None] * axes[:, 0])
-    return None
+    spread = known.T @ known / len(known) + LIMB_AS_WAY**2 * np.outer(along, along)
+    values, vectors = np.linalg.eigh(spread)
+    if values[0] > FLAT * values[1]:
+        return None
+    turns = mean_seen(np.cross(straight / length, ways), axis=1) @ vectors[:, 0]
+    return right_from_hinge(sign * turns[:, None] * vectors[:, 0])
+
+
+def straightest(along: Array, seen: Array) -> Array:
+    """Return where markers of the limb beyond are while the joint is straightest, (n_markers, 3) m.
+
+    Parameters
+    ----------
+    along, seen
+        As in `right_from_bending`.
+    """
+    found = np.full(seen.shape[1:], np.nan)
+    for i, marker in enumerate(np.moveaxis(seen, 1, 0)):
+        reach = marker @ along
+        if np.isfinite(reach).any():
+            found[i] = median_seen(marker[reach >= np.nanquantile(reach, 1 - STRAIGHT_SHARE)])
+    return found
 
 
 def up_of_trunk(body: Body, towards_head: Array) -> Array:
