@@ -125,7 +125,7 @@ def stage_warnings(
 
 
 def reach_warnings(
-    fits: Mapping[str, JointFit], findings: Mapping[str, Mapping[str, Json]], degrees: float
+    fits: Mapping[str, JointFit], findings: Mapping[str, Json], degrees: float
 ) -> tuple[str, ...]:
     """Return the warning that names hinges whose limb is often out of their reach.
 
@@ -138,7 +138,8 @@ def reach_warnings(
     """
     missed = []
     for name, fit in fits.items():
-        share = findings[name].get("unreachable")
+        found = findings[name]
+        share = found.get("unreachable") if isinstance(found, Mapping) else None
         if fit.source == "movement" and len(fit.axes) == 1 and isinstance(share, float):
             missed += [f"{name} ({share:.0%} of the frames)"] if share > LARGE_SHARE else []
     if not missed:
