@@ -36,7 +36,7 @@ def kneeling(seed, degrees):
 
 @pytest.mark.parametrize(("seed", "degrees"), [(32, 90.0), (32, 110.0), (31, 100.0)])
 def test_knees_without_landmarks_stay_at_the_knees(seed, degrees):
-    """The axis stays open, half a thigh's length of it; across it the motion tells the centre."""
+    """Along the axis little is known; across it the motion tells the centre."""
     recording, model, true = kneeling(seed, degrees)
     found = fit_skeleton(recording, model)
     frames = np.arange(0, true.n_frames, 20)
