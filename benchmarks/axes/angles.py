@@ -239,7 +239,6 @@ def bars(found: dict[str, Any]) -> list[Bar]:
             cross["delivered"]["median"],
             "deg",
             1.0,
-            beside=True,
         ),
     ]
 
@@ -266,7 +265,7 @@ about the other axis alone, *because* of that movement. Cones 60–120°, 1° of
 - *rms* is the whole resting angle, {whole}° in the median. It holds the noise of the poses, which
   does not follow anything and which no axes can take out: true axes show {noise}° of it. Angles are
   never smoothed.
-- The figure held to 1° was the whole of it at first, and missed; it stands beside since.
+- The figure held to 1° was the whole of it at first: it is held to it still, and misses.
 
 | | rms: median | worst | follows: median | worst |
 |---|---:|---:|---:|---:|"""

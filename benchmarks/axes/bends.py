@@ -109,9 +109,10 @@ without the first bend and its return, in which the person lifts the thigh into 
 |---|---:|---:|---:|---:|---:|---:|---:|---:|"""  # noqa: E501
 _AFTER = """
 Bends are not told from returns, so there is no hysteresis to reckon with. Of an axis that is the
-same in every bend two halves of this scatter would still differ by the expected angle: 1.5° is what
-chance leaves of ten looks. An estimator can weigh them, more of them it cannot make. What the right
-knee has above that is its first bend: without it the means of both knees are below 1.5° apart.
+same in every bend two halves of such a scatter would still differ by the expected angle: by {all}
+with all bends, by {rest} without the first one. Chance alone would meet 1.5° then, and the means of
+the bends do ({means}). Where an axis misses it, it is by one bend, the first, in which
+the thigh is being lifted: the estimator does not weigh it down.
 """
 
 
@@ -127,4 +128,10 @@ def page(rows: Mapping[str, Mapping[str, Any] | None]) -> str:
         figures += [rest[k] for k in ("scatter_deg", "expected_deg", "halves_deg")]
         cells = [joint.replace("_", " "), str(row["n"]), *map(number, figures)]
         lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join([*lines, _AFTER])
+    told = {
+        "all": [row["expected_deg"] for row in known.values()],
+        "rest": [row["without_first"]["expected_deg"] for row in known.values()],
+        "means": [row["without_first"]["halves_deg"] for row in known.values()],
+    }
+    spoken = {k: " and ".join(f"{degrees:.2f}°" for degrees in v) for k, v in told.items()}
+    return "\n".join([*lines, _AFTER.format(**spoken)])

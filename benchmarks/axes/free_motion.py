@@ -21,7 +21,6 @@ METHODS = (LIKELIEST, LEAST_SQUARES, JOINING, DEFAULT)
 LIMIT = 2.0
 ALL_NOISES = ("clean", "iid 1°", "iid 3°", "OU 1°", "OU 3°")
 LONG_NOISES = ("OU 1°",)
-LONG = 120.0  # s, motions added to see how much of them it takes
 
 
 @dataclass(frozen=True)
@@ -131,7 +130,6 @@ def bars(table: dict[str, Any]) -> list[Bar]:
             rows[LIKELIEST]["OU 1°"]["median_deg"],
             "deg",
             LIMIT,
-            beside=MOTIONS[motion].seconds >= LONG,
         )
         for motion, rows in table.items()
     ]

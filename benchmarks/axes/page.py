@@ -79,8 +79,10 @@ def scoreboard(bars: Sequence[Bar]) -> str:
     lines = [
         f"**{sum(bar.met for bar in asked)} of {len(asked)} figures meet what is asked of them**, "
         "numbers that were set before anything was measured here. Beside them stand "
-        f"{len(beside)} that were added later to tell what a figure consists of, or what more "
-        f"motion does, held to the same numbers ({sum(bar.met for bar in beside)} meet them).\n",
+        f"{len(beside)} that were added later to tell what a figure consists of, held to the same "
+        f"numbers ({sum(bar.met for bar in beside)} meet them). Two figures that were asked for "
+        "are measured in two ways and count twice: cross-talk as the whole error and as what "
+        "follows the other angle, free motion in 20 or 60 s and in 120 s.\n",
         "| | figure | measured | asked | |",
         "|---|---|---:|---:|---|",
     ]

@@ -149,11 +149,14 @@ def bars(sources: Mapping[str, Sequence[Mapping[str, Any]]]) -> list[Bar]:
             0,
         )
     )
-    bad = contradictions(sources)["contradicted"]
+    both = contradictions(sources)
+    bad = both["contradicted"]
+    untested, given = len(both["untested"]), len(both["given"])
     asked.append(
         Bar(
             "Repeatability",
-            "joints with axes that halves contradict by more than 10°, unflagged",
+            "joints with axes that halves contradict by more than 10°, unflagged, "
+            f"of {given - untested} tested ({untested} of {given} cannot be)",
             float(len(bad)),
             "",
             0,
@@ -177,10 +180,10 @@ the normalized frame of its own thigh and its own trial, so this holds the diffe
 person's legs as well as that of two normalizations: no pose tells which twist of a thigh is
 neutral.
 
-In all recordings together {given} joints got axes from their movement. The two halves contradict
-each other by more than 10° at {bad} of them although nothing was said{which}; at {untested} one
-half moves too little to tell. All other joints have axes of the body frame, with the reason among
-the warnings.
+In all recordings together {given} joints got axes from their movement. At {untested} of them one
+half moves too little to tell: nothing tests those. Of the other {tested}, halves contradict each
+other by more than 10° at {bad} although nothing was said{which}. All other joints have axes of the
+body frame, with the reason among the warnings.
 """
 
 
@@ -210,6 +213,7 @@ def page(sources: Mapping[str, Sequence[Mapping[str, Any]]]) -> str:
             given=len(both["given"]),
             bad=len(bad),
             untested=len(both["untested"]),
+            tested=len(both["given"]) - len(both["untested"]),
             which=" (" + ", ".join(bad) + ")" if bad else "",
         )
     )

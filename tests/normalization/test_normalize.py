@@ -256,6 +256,16 @@ def test_a_body_that_does_not_stand_is_aligned_and_flagged(turn, reason, doll):
     assert any(reason in warning and "frame 101" in warning for warning in step.warnings)
 
 
+@pytest.mark.parametrize(("degrees", "said"), [(30.0, False), (55.0, True)])
+def test_a_forearm_held_out_is_told_of_somebody_who_stands(degrees, said, doll, tools):
+    way = np.sin(np.deg2rad(degrees)), -np.cos(np.deg2rad(degrees)), 0.0
+    step = step_of(normalize(doll(stance=tools.stance | {"left_forearm": way}).motion))
+    assert step.findings["good_default_position"] is True
+    told = [warning for warning in step.warnings if "left_forearm" in warning]
+    assert bool(told) == said
+    assert not said or f"left_forearm ({degrees:.0f} deg off)" in told[0]
+
+
 @pytest.mark.parametrize(
     ("stance", "reason"),
     [

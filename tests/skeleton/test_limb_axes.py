@@ -17,6 +17,9 @@ THIGH = np.array([[0.02, -0.2, 0.09], [0.0, -0.42, 0.055], [0.06, -0.3, 0.02]])
 TOED_OUT = np.deg2rad(20)
 TILT = np.rad2deg(np.arctan2(THIGH[1, 2], -THIGH[1, 1]))
 """deg, of the line from the hip to the farthest marker: all that may tilt the axis, in part."""
+SHANK_ASIDE = 15.0
+"""deg, by which the line from the thigh's farthest marker to the middle of SHANK leaves the plane
+of flexion."""
 SHANK = np.array([[0.04, -0.15, -0.01], [0.05, -0.28, -0.01], [0.0, -0.4, -0.03]])
 """m from hip and knee: lateral on the thigh, in front and medial on the shank; a right leg."""
 
@@ -90,3 +93,35 @@ def test_nothing_is_told_without_frames_or_bends():
     assert right_from_bending(down, seen, -1.0, flexed) is None
     assert right_from_bending(down, np.full_like(seen, np.nan), -1.0, flexed) is None
     assert right_from_bending(down, seen[:1], -1.0, flexed) is None
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize(("least", "most"), [(60, 100), (80, 100), (90, 90), (85, 120), (95, 130)])
+def test_a_knee_kept_bent_has_its_axis_the_right_way_round(side, least, most):
+    """Beyond 90° further bending brings the shank forwards; at 90° it moves along the thigh."""
+    body, axis = leg(side, np.deg2rad(np.linspace(least, most, FRAMES)))
+    assert off(body, axis) < TILT + SHANK_ASIDE
+
+
+@pytest.mark.parametrize(
+    ("least", "most"), [(0, 60), (30, 80), (85, 120), (95, 130), (100, 150), (120, 150)]
+)
+def test_bending_tells_right_from_left_by_how_it_turned(least, most):
+    right = right_from_bending(*bending(least, most), -1.0, np.deg2rad(20))
+    assert np.rad2deg(np.arccos(right[2])) < 2.0
+
+
+def test_ways_along_the_limb_tell_no_plane():
+    """A shank that goes from 80° to 105° moves along the thigh; across it there is noise alone."""
+    down, seen = bending(80, 105, noise=0.01)
+    assert right_from_bending(down, seen, -1.0, np.deg2rad(20)) is None
+
+
+def bending(least, most, noise=1e-3):
+    """Return a thigh's direction and a shank's markers, whose knee's axis is z."""
+    t = np.deg2rad(np.linspace(least, most, 400))
+    shank = rotation_about(np.array([0.0, 0.0, -1.0]), t)
+    markers = np.array([[0.02, -0.2, 0.03], [0.0, -0.4, 0.04]])
+    seen = np.einsum("fij,mj->fmi", shank, markers)
+    seen += np.random.default_rng(0).normal(scale=noise, size=seen.shape)
+    return np.array([0.0, -1.0, 0.0]), seen

@@ -83,7 +83,7 @@ def test_the_verdict_weighs_motion_against_use_and_expectation(
     prior = np.eye(3) / (spread_mm * 1e-3) ** 2
     fit = CentreFit(np.zeros(3), 1e-3, data, prior, np.linalg.inv(np.linalg.inv(data) + prior), 9)
     measured = MeasuredJoint(
-        JointModel("left_hip", "pelvis", "left_thigh"), fit, np.zeros(3), "book"
+        JointModel("left_hip", "pelvis", "left_thigh"), fit, np.zeros(3), spread_mm * 1e-3, "book"
     )
     found, note = verdict_on(measured, np.deg2rad(range_deg), SkeletonSettings())
     assert found == expected

@@ -106,8 +106,9 @@ def fit_centre(
             prior = prior + _single(view, expected, tighter) / spread**2
         x, information = _fit(view, x, expected, prior, hidden, rounds)
     else:
-        x, information = _fit(view, x, expected, 0.01 * prior, hidden, rounds)
-        along = None if hinge is None else _open_axis(information, spread, hinge)
+        # nearly without expectation a centre may flee along the axis: no place to start from
+        loose = _fit(view, x, expected, 0.01 * prior, hidden, rounds)[1]
+        along = None if hinge is None else _open_axis(loose, spread, hinge)
         if along is not None:
             prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
         x, information = _fit(view, x, expected, prior, hidden, rounds)

@@ -4,14 +4,21 @@ import numpy as np
 
 from kinesphere.data import Json
 from kinesphere.normalization.alignment import Alignment
+from kinesphere.normalization.anatomy import without_side
 from kinesphere.normalization.default_frames import DefaultFrames
 from kinesphere.normalization.facing import Verdict
 from kinesphere.normalization.samples import Samples
 
 _WIDE = np.deg2rad(10.0)  # spread of the body frames from which their mean is in doubt
 
+_CROOKED = np.deg2rad(45.0)
+"""rad, from where a limb points in the ideal default position, from which on that is said."""
+ARM = ("upper_arm", "forearm", "hand")
 
-def warnings_of(samples: Samples, default: DefaultFrames, alignment: Alignment) -> tuple[str, ...]:
+
+def warnings_of(
+    samples: Samples, default: DefaultFrames, alignment: Alignment, template: str
+) -> tuple[str, ...]:
     """Return what was doubtful, each a sentence for a person."""
     said = list(default.warnings)
     if default.doubts:
@@ -19,6 +26,11 @@ def warnings_of(samples: Samples, default: DefaultFrames, alignment: Alignment) 
         said.append(
             f"no frame shows a good default position; the best, frame {frame}, was used although "
             + "; ".join(default.doubts)
+        )
+    elif crooked := _crooked(alignment, template):
+        said.append(
+            f"the body stands in the default position, {', '.join(crooked)} not as they would: "
+            "turned into place by the shortest way, their twist may be off"
         )
     widest = float(default.spread.max())
     if widest > _WIDE:
@@ -34,6 +46,16 @@ def warnings_of(samples: Samples, default: DefaultFrames, alignment: Alignment) 
     if alignment.never:
         said.append(f"{', '.join(alignment.never)} could not be aligned and keeps its frame")
     return tuple(said)
+
+
+def _crooked(alignment: Alignment, template: str) -> list[str]:
+    """Return the limbs that point far from where the template has them, with the angle."""
+    apart = ARM if template == "t-pose" else ()  # where arms point sideways, that is no fault
+    return [
+        f"{name} ({np.rad2deg(off):.0f} deg off)"
+        for name, off in alignment.off_ideal.items()
+        if off > _CROOKED and without_side(name) not in apart
+    ]
 
 
 def findings_of(

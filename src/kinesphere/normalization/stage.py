@@ -66,7 +66,7 @@ def normalize(
         name="normalization",
         settings=settings_as_json(settings),
         findings=findings_of(samples, default, verdict, alignment),
-        warnings=warnings_of(samples, default, alignment) + verdict.warnings,
+        warnings=warnings_of(samples, default, alignment, settings.template) + verdict.warnings,
     )
     moved = propagate(motion, alignment.turns, alignment.shifts, alignment.along, alignment.lengths)
     return replace(moved, history=(*motion.history, step))

@@ -33,6 +33,8 @@ def reasons_to_doubt(
         doubts.append("there is too little movement to compare two halves of it")
     elif np.rad2deg(quality.halves.max()) > 2 * s.largest_uncertainty:
         doubts.append(apart(quality.halves))
+    elif np.rad2deg(quality.uncertainty.max()) > s.largest_uncertainty:
+        doubts.append(uncertain(quality))
     if len(axes) > 1 and quality.explained < s.smallest_explained:
         doubts.append(
             f"rotation about one axis at a time explains only {quality.explained:.0%} "
@@ -43,6 +45,12 @@ def reasons_to_doubt(
         spread = float(np.rad2deg(np.sqrt(((heights - np.median(heights)) ** 2).mean())))
         if spread > s.largest_spread:
             doubts.append(f"the limb leaves the cone about its only axis by {spread:.0f}° rms")
+        elif (arc := np.rad2deg(quality.ranges.min())) * np.deg2rad(s.largest_uncertainty) < spread:
+            # as far as it leaves the cone over the arc it moves, its axis may be turned
+            doubts.append(
+                f"the limb leaves the cone about its only axis by {spread:.1f}° rms, too much for "
+                f"the {arc:.0f}° that it moves about it to tell the axis"
+            )
     if nominal is not None:
         off = np.arccos(np.clip(np.abs((axes * nominal).sum(axis=1)), 0, 1))
         if (farthest := np.rad2deg(off.max())) > s.farthest:
@@ -58,3 +66,13 @@ def reasons_to_doubt(
 def apart(halves: Array) -> str:
     """Return how far axes from two halves differ, (n_axes,) rad, as a clause."""
     return f"axes from two halves of the data differ by {np.rad2deg(halves.max()):.0f}°"
+
+
+def uncertain(quality: AxesQuality) -> str:
+    """Return how uncertain the least certain axis is, and what makes it so, as a clause."""
+    worst = int(quality.uncertainty.argmax())
+    degrees = np.rad2deg([quality.uncertainty[worst], quality.ranges[worst], quality.halves[worst]])
+    return (
+        "an axis is uncertain by {:.1f}°: its movement covers {:.0f}°, and two halves of it differ "
+        "by {:.0f}°"
+    ).format(*degrees)

@@ -10,6 +10,9 @@ from kinesphere.parameterization.joint import JointFit
 from kinesphere.parameterization.measures import number
 from kinesphere.parameterization.view import JointView
 
+LARGE_SHARE = 0.25
+"""Of the frames: a hinge whose limb is out of its reach more often than that is no plain hinge."""
+
 
 class Told(NamedTuple):
     """What the movement of one joint tells, once its frames may be forgotten."""
@@ -119,6 +122,32 @@ def stage_warnings(
     if untwisted:
         warnings.append(f"nothing tells the twist at {', '.join(untwisted)}")
     return tuple(warnings)
+
+
+def reach_warnings(
+    fits: Mapping[str, JointFit], findings: Mapping[str, Json], degrees: float
+) -> tuple[str, ...]:
+    """Return the warning that names hinges whose limb is often out of their reach.
+
+    Parameters
+    ----------
+    fits, findings
+        By joint name; findings hold what `result_findings` returns.
+    degrees
+        How far off counts as out of reach.
+    """
+    missed = []
+    for name, fit in fits.items():
+        found = findings[name]
+        share = found.get("unreachable") if isinstance(found, Mapping) else None
+        if fit.source == "movement" and len(fit.axes) == 1 and isinstance(share, float):
+            missed += [f"{name} ({share:.0%} of the frames)"] if share > LARGE_SHARE else []
+    if not missed:
+        return ()
+    return (
+        f"one axis leaves the limb more than {degrees:g}° out of its reach, by skin, by a movement "
+        f"it does not have or by an axis that is off: {', '.join(missed)}",
+    )
 
 
 def result_findings(residuals: Array, twists: Array, flags: Codes) -> dict[str, Json]:

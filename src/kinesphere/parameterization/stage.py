@@ -30,7 +30,13 @@ from kinesphere.parameterization.measures import (
     paper_measures,
 )
 from kinesphere.parameterization.per_joint import parse_counts, parse_windows
-from kinesphere.parameterization.report import Told, result_findings, stage_warnings, told
+from kinesphere.parameterization.report import (
+    Told,
+    reach_warnings,
+    result_findings,
+    stage_warnings,
+    told,
+)
 from kinesphere.parameterization.reused import misfit, reused_fit
 from kinesphere.parameterization.settings import (
     AxesSettings,
@@ -142,6 +148,7 @@ def parameterize(
     if settings.angles.unwrap:
         angles, twists = unwrapped(angles), unwrapped(twists)
     warnings = stage_warnings(seen, fits, settings.axes.method)
+    warnings += reach_warnings(fits, findings, settings.angles.unreachable)
     own = [name for name, fit in fits.items() if fit.source != "reused"]
     if reuse is not None and own:
         warnings += (

@@ -15,6 +15,8 @@ STRAIGHT_SHARE = 0.05
 LIMB_AS_WAY = 0.1
 """What a limb's direction counts in the plane of flexion, as a way of so many lengths: enough to
 complete short ways, too little to tilt long ones."""
+FLAT = 0.25
+"""Most scatter across a plane of flexion, as a share of that along its lesser direction."""
 UPRIGHT = np.cos(np.deg2rad(30.0))
 """Least cosine between a trunk and the vertical for the world's up to be the body's."""
 
@@ -74,7 +76,10 @@ def right_from_bending(along: Array, seen: Array, sign: float, flexed: float) ->
     Markers on one side of a joint make a straight knee look bent sideways, by 20° and more where
     those of the thigh are lateral and those of the shank in front. The ways that markers have come
     since the hinge was straightest lie in the plane of flexion wherever they sit. A short way has
-    one direction alone; the limb itself is the other, which its far marker tells to 7 to 10°.
+    one direction alone; the limb itself is the other, which its far marker tells to 7 to 10°: where
+    ways go along the limb, about a knee that stays bent by 90°, no plane is told. The way in which
+    markers turned from the straightest tells right from left; how far behind the limb they came
+    does not: beyond 90° they come forwards again.
 
     Parameters
     ----------
@@ -87,22 +92,36 @@ def right_from_bending(along: Array, seen: Array, sign: float, flexed: float) ->
     flexed
         rad, what a marker must have turned since.
     """
-    ways = np.full(seen.shape, np.nan)
+    straight = straightest(along, seen)
+    length = np.linalg.norm(straight, axis=1)[:, None]
+    ways = (seen - straight) / length
+    turned = np.linalg.norm(ways, axis=2) > 2 * np.sin(flexed / 2)
+    ways = np.where(turned[..., None], ways, np.nan)
+    known = ways[np.isfinite(ways).all(axis=2)]
+    if not len(known):
+        return None
+    spread = known.T @ known / len(known) + LIMB_AS_WAY**2 * np.outer(along, along)
+    values, vectors = np.linalg.eigh(spread)
+    if values[0] > FLAT * values[1]:
+        return None
+    turns = mean_seen(np.cross(straight / length, ways), axis=1) @ vectors[:, 0]
+    return right_from_hinge(sign * turns[:, None] * vectors[:, 0])
+
+
+def straightest(along: Array, seen: Array) -> Array:
+    """Return where markers of the limb beyond are while the joint is straightest, (n_markers, 3) m.
+
+    Parameters
+    ----------
+    along, seen
+        As in `right_from_bending`.
+    """
+    found = np.full(seen.shape[1:], np.nan)
     for i, marker in enumerate(np.moveaxis(seen, 1, 0)):
         reach = marker @ along
-        if not np.isfinite(reach).any():
-            continue
-        straight = median_seen(marker[reach >= np.nanquantile(reach, 1 - STRAIGHT_SHARE)])
-        way = (marker - straight) / np.linalg.norm(straight)
-        turned = np.linalg.norm(way, axis=1) > 2 * np.sin(flexed / 2)
-        ways[turned, i] = way[turned]
-    rough = right_from_hinge(sign * np.cross(along, mean_seen(ways, axis=1)))
-    if rough is None:
-        return None
-    known = ways[np.isfinite(ways).all(axis=2)]
-    spread = known.T @ known / len(known) + LIMB_AS_WAY**2 * np.outer(along, along)
-    normal = np.linalg.eigh(spread)[1][:, 0]
-    return np.asarray(normal * np.sign(normal @ rough))
+        if np.isfinite(reach).any():
+            found[i] = median_seen(marker[reach >= np.nanquantile(reach, 1 - STRAIGHT_SHARE)])
+    return found
 
 
 def up_of_trunk(body: Body, towards_head: Array) -> Array:

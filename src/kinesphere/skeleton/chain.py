@@ -34,6 +34,8 @@ class MeasuredJoint:
     fit: CentreFit
     expected: Array
     """(3,) m in the parent."""
+    spread: float
+    """m, how far off the expectation may be."""
     source: str
     """Where the expectation comes from."""
 
@@ -112,7 +114,7 @@ def _measure_limb(
         hinge=parent.right if joint.n_axes == 1 else None,
         tighter=settings.hinge,
     )
-    measured = MeasuredJoint(joint, fit, expected, source)
+    measured = MeasuredJoint(joint, fit, expected, spread, source)
     centre = out_of_frame(parent.rotations, parent.shifts, fit.centre[None])[:, 0]
     with_joint = np.concatenate([own, centre[:, None]], axis=1)
     if solid is None:

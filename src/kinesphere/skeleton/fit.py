@@ -20,6 +20,7 @@ from kinesphere.data import (
 from kinesphere.errors import BadRecording
 from kinesphere.skeleton.adoption import adopt, find_adoptions
 from kinesphere.skeleton.chain import measure_chain
+from kinesphere.skeleton.far_centres import far_centres
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 from kinesphere.skeleton.report import describe_joint, describe_limb
 from kinesphere.skeleton.sampling import spread_frames
@@ -118,6 +119,7 @@ def fit_skeleton(
             *tree.warnings,
             *_poor_fits(tree.limbs, solved.residuals, share),
             *_open_centres(described.values(), {c: j.source for c, j in joints.items()}),
+            *far_centres(joints, bodies),
         ),
         version=kinesphere.__version__,
     )

@@ -12,6 +12,7 @@ from kinesphere.skeleton.body_axes import (
     right_from_hinge,
     right_from_pairs,
     right_from_parent,
+    straightest,
     unit,
     up_of_trunk,
 )
@@ -27,6 +28,8 @@ from kinesphere.skeleton.tree import Tree
 
 UPPER = ("head", "trunk")
 """Limbs towards which a pelvis or trunk points up."""
+SURELY_FLEXED = np.deg2rad(45.0)
+"""rad, from which a knee does not only look bent for markers beside it."""
 
 
 def find_axes(
@@ -81,7 +84,8 @@ def _right_of_hinge(
     """Return the axis of the hinge beyond a limb as the limb sees it; None where it hardly bends.
 
     Knees straighten whenever somebody stands, which tells what is bent from what only looks so;
-    elbows may never, and pronation moves the markers of a forearm.
+    elbows may never, and pronation moves the markers of a forearm. A knee that never straightens,
+    of somebody seated or kneeling, is bent for certain: where the shank points tells it, too.
     """
     assert body.centre is not None
     beyond = [joint for joint in tree.joints if joint.parent == body.name]
@@ -89,7 +93,12 @@ def _right_of_hinge(
         shank = cloud(tree.markers[beyond[0].child], sample)
         seen = into_frame(body.rotations, body.shifts, shank) - body.shape[far]
         along = unit(body.shape[far] - body.centre)
-        return right_from_bending(along, seen, HINGE_SIGN["knee"], flexed)
+        least = mean_seen(unit(straightest(along, seen)))
+        if not unit(least) @ along < np.cos(SURELY_FLEXED):
+            right = right_from_bending(along, seen, HINGE_SIGN["knee"], flexed)
+            if right is not None:
+                return right
+            flexed = max(flexed, SURELY_FLEXED)
     centre = out_of_frame(body.rotations, body.shifts, body.centre[None])[:, 0]
     towards = unit(own[:, far] - centre)
     normals = flexed_normals(next_normals(body.name, towards, own[:, far], tree, sample), flexed)

@@ -1,0 +1,81 @@
+"""Which axes are doubted for what is known of them."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from kinesphere.parameterization.confidence import AxesQuality
+from kinesphere.parameterization.doubts import reasons_to_doubt
+from kinesphere.parameterization.report import reach_warnings
+from kinesphere.parameterization.settings import AxesSettings
+
+SETTINGS = AxesSettings()
+AXIS = np.array([[0.0, 0.0, 1.0]])
+
+
+def quality(range_deg, halves_deg):
+    """Return the quality of one axis."""
+    return AxesQuality(
+        labels=np.zeros(1, dtype=np.intp),
+        ranges=np.deg2rad([range_deg]),
+        conditioning=np.array([9.0]),
+        explained=1.0,
+        halves=np.deg2rad([halves_deg]),
+        heights=np.zeros(1),
+    )
+
+
+def swing(range_deg, off_deg):
+    """Return directions of a limb that swings about `AXIS` and leaves its plane, rms."""
+    t = np.linspace(-0.5, 0.5, 400)
+    angles = np.deg2rad(range_deg) * t
+    up = np.sqrt(2) * np.deg2rad(off_deg) * np.sin(16 * np.pi * t)
+    return np.stack([np.cos(up) * np.sin(angles), -np.cos(up) * np.cos(angles), np.sin(up)], axis=1)
+
+
+def doubts(range_deg, halves_deg, off_deg=0.0):
+    told = quality(range_deg, halves_deg), AXIS, None, swing(range_deg, off_deg), SETTINGS
+    return reasons_to_doubt(*told)
+
+
+@pytest.mark.parametrize(
+    ("range_deg", "halves_deg", "doubted"),
+    [
+        (80.0, 18.0, False),
+        (80.0, 21.0, True),
+        (12.5, 6.0, False),  # 9.7°
+        (12.5, 12.0, True),  # 11.0°, of which the halves say 6°
+        (13.0, 18.0, True),  # 12.6°
+    ],
+)
+def test_an_axis_is_doubted_by_the_whole_of_its_uncertainty(range_deg, halves_deg, doubted):
+    uncertain = np.rad2deg(quality(range_deg, halves_deg).uncertainty[0])
+    assert (uncertain > SETTINGS.largest_uncertainty) == doubted
+    assert bool(doubts(range_deg, halves_deg)) == doubted
+
+
+@pytest.mark.parametrize(
+    ("range_deg", "off_deg", "doubted"),
+    [(80.0, 4.0, False), (19.0, 1.5, False), (14.0, 4.0, True), (19.0, 8.0, True)],
+)
+def test_a_limb_that_leaves_its_cone_wants_a_wide_movement(range_deg, off_deg, doubted):
+    found = doubts(range_deg, 2.0, off_deg)
+    assert bool(found) == doubted
+    assert not doubted or "leaves the cone" in found[0]
+
+
+@pytest.mark.parametrize(
+    ("share", "source", "said"),
+    [
+        (0.32, "movement", True),
+        (0.2, "movement", False),
+        (0.5, "body", False),
+        (None, "movement", False),
+    ],
+)
+def test_a_hinge_whose_limb_is_often_out_of_reach_is_named(share, source, said):
+    fits = {"right_elbow": SimpleNamespace(axes=AXIS, source=source)}
+    told = reach_warnings(fits, {"right_elbow": {"unreachable": share}}, 2.0)
+    assert bool(told) == said
+    assert not said or "right_elbow (32% of the frames)" in told[0]
