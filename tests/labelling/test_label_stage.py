@@ -122,6 +122,20 @@ def test_labels_that_are_there_are_checked(legs):
     assert found.labels == swapped.labels
     assert found.history[-1].findings["disagree"] == {"LKNE": "RKNE", "RKNE": "LKNE"}
     assert any("LKNE moves like RKNE" in warning for warning in found.history[-1].warnings)
+    assert found.history[-1].findings["not_judged"] == []
+    assert found.history[-1].findings["checked"] == len(names)
+    assert (found.confidence[[a, b]] == 0).all()
+    others = [i for i in range(len(names)) if i not in (a, b)]
+    assert (found.confidence[others] > 0).all()
+
+
+def test_labels_that_cannot_be_checked_are_not_said_to_agree(legs):
+    model, recording = legs
+    still = replace(recording, markers=np.repeat(recording.markers[:1], 100, axis=0))
+    step = label(still, model, LabellingSettings(existing="check")).history[-1]
+    assert step.findings["checked"] == 0
+    assert set(step.findings["not_judged"]) == set(recording.labels)
+    assert any("could not be judged" in warning for warning in step.warnings)
 
 
 def test_labels_that_are_there_are_ignored(legs):

@@ -112,6 +112,25 @@ class TestPairStatistics:
         assert_array_equal(labels[:3], -1)
         assert_array_equal(labels[3:], np.arange(recording.n_markers))
 
+    @pytest.mark.parametrize("n", [5, 9])
+    def test_points_that_stay_in_the_room_stay_without_label(self, legs, rng, n):
+        model, recording = legs
+        props = np.repeat(rng.uniform(-1, 1, (1, n, 3)), recording.n_frames, axis=0)
+        found = match_pair_statistics(np.concatenate([recording.markers, props], axis=1), model)
+        labels = given(found)
+        assert (labels[recording.n_markers :] < 0).all()
+        own = labels[: recording.n_markers]
+        right = np.array([model.labels.index(name) for name in recording.labels])
+        assert ((own == right) | (own < 0)).all()
+
+    @pytest.mark.parametrize("moving", [False, True])
+    def test_points_in_one_place_are_refused(self, legs, moving):
+        model, recording = legs
+        points = np.repeat(recording.markers[:, :1], recording.n_markers, axis=1)
+        found = match_pair_statistics(points if moving else np.zeros_like(points), model)
+        assert (found.labels < 0).all()
+        assert "in one place" in found.note
+
     def test_one_frame_is_refused(self, legs):
         model, recording = legs
         match = match_pair_statistics(recording.markers[:1], model)

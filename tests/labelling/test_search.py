@@ -10,7 +10,7 @@ from kinesphere.geometry.signature import scale_of, signature
 from kinesphere.labelling.doubting import shaken
 from kinesphere.labelling.layout import Solved, layout_of
 from kinesphere.labelling.problem import problem_of
-from kinesphere.labelling.search import COLD, WARM
+from kinesphere.labelling.search import COLD, WARM, _misfit
 from kinesphere.labelling.shapes import alike, shape_of
 from kinesphere.labelling.template import usual_deviations
 from kinesphere.labelling.verdict import ALONE, MARGIN, confidence_of
@@ -54,6 +54,23 @@ def solved(legs):
 
 
 class TestSearch:
+    def test_many_points_that_are_no_markers_do_not_end_the_search(self, solved, rng):
+        # once every label is borne, no label is left for any number of unlabelled points
+        problem = solved[1].problem
+        nobody = np.full(problem.n_points, -1)
+        empty = np.array([], dtype=np.int64)
+        changed = problem.anneal(nobody, rng.random((50, 3)), WARM, COLD, targets=empty)
+        assert_array_equal(changed, nobody)
+        assert_array_equal(
+            problem.anneal(nobody, rng.random((50, 3)), WARM, COLD, points=empty), nobody
+        )
+
+    def test_points_without_label_are_not_the_worst_by_themselves(self, solved):
+        problem, labels = solved[1].problem, solved[1].labels.copy()
+        labels[:4] = -1
+        worst = np.argsort(-_misfit(problem, labels))[:4]
+        assert (labels[worst] >= 0).any()
+
     def test_energies_of_points_add_up(self, solved):
         problem, labels = solved[1].problem, solved[1].labels
         pairs = _pair_energy(problem, labels)

@@ -108,6 +108,8 @@ def show(summary: dict[str, Any]) -> None:
     console = stdout()
     if "labels" not in summary:
         head = f"{summary['checked']} labels checked, {len(summary['disagree'])} disagree"
+        if summary["not_judged"]:
+            head += f", {len(summary['not_judged'])} could not be judged"
         print_title(console, Path(summary["file"]).name, head)
         print_warnings(console, summary["warnings"])
         return

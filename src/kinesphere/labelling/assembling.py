@@ -94,7 +94,10 @@ def checked(
     known: dict[str, int],
     state: Labelled,
 ) -> Recording:
-    """Return the recording with its own labels, and what speaks against them."""
+    """Return the recording with its own labels, and what speaks against them.
+
+    Labels that could not be judged have no confidence, those that another label fits better have 0.
+    """
     found: dict[str, Json] = {}
     sure = np.full(recording.n_markers, np.nan)
     columns = {column: name for name, column in known.items()}
@@ -103,15 +106,22 @@ def checked(
             name = columns.get(run.column)
             if name is None or of < 0:
                 continue
-            sure[run.column] = certain
-            if model.labels[of] != name:
+            agrees = model.labels[of] == name
+            sure[run.column] = certain if agrees else 0.0
+            if not agrees:
                 found[name] = model.labels[of]
+    unknown: list[Json] = [name for name, column in known.items() if np.isnan(sure[column])]
     step = Step(
         name="label",
         settings={"model": model.name, **settings_as_json(settings)},
-        findings={"checked": len(known), "disagree": found},
+        findings={
+            "checked": len(known) - len(unknown),
+            "disagree": found,
+            "not_judged": unknown,
+        },
         warnings=(
             *state.notes,
+            *([f"could not be judged: {', '.join(map(str, unknown))}"] if unknown else ()),
             *(f"{name} moves like {other} of model {model.name}" for name, other in found.items()),
         ),
     )

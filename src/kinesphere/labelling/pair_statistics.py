@@ -80,6 +80,8 @@ def match_pair_statistics(
         )
     kept = in_own_order(points, kept)
     found = signature(points[:, kept])
+    if not scale_of(found.mean) > 0:
+        return nothing(n_points, "all points are in one place")
     again = _of_person(found, layout, model)
     if isinstance(again, str):
         return nothing(n_points, again)

@@ -127,8 +127,13 @@ class Problem:
         """Return labels after random exchanges, among some points and labels if given.
 
         They grow less willing to go upward. A share of the quadruples stands for all of them.
+        Without points or without labels to exchange nothing changes.
         """
         changed = labels.copy()
+        if 0 in (len(labels) if points is None else len(points), self.n_labels):
+            return changed
+        if targets is not None and not len(targets):
+            return changed
         some, weights = self.thinned
         kernels.anneal(
             changed,

@@ -138,7 +138,7 @@ def mended(problem: Problem, labels: Labels, rng: np.random.Generator, *, nullab
     for _ in range(MENDINGS):
         size = int(rng.integers(WORST[0], WORST[1] + 1))
         noise = rng.choice(NOISE) * rng.gumbel(size=n)
-        points = np.argsort(-(problem.energies(labels) + noise), kind="stable")[:size]
+        points = np.argsort(-(_misfit(problem, labels) + noise), kind="stable")[:size]
         holder = problem.holders(labels)
         targets = np.union1d(labels[points][labels[points] >= 0], np.flatnonzero(holder < 0))
         draws = rng.random((STEPS_A_POINT * len(points), 3))
@@ -150,6 +150,14 @@ def mended(problem: Problem, labels: Labels, rng: np.random.Generator, *, nullab
         if reached < energy - 1e-6:
             labels, energy = changed, reached
     return labels
+
+
+def _misfit(problem: Problem, labels: Labels) -> Array:
+    """Return how badly each point fits; one without label as the middle one of those with."""
+    energies = problem.energies(labels)
+    labelled = labels >= 0
+    energies[~labelled] = np.median(energies[labelled]) if labelled.any() else 0.0
+    return energies
 
 
 def nearest_labels(mean: Array) -> Labels:

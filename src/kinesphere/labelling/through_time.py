@@ -67,6 +67,11 @@ def label_through_time(
     state.fit = match.fit
     if match.note:
         state.notes.append(match.note)
+    elif (match.labels >= 0).any() and not (match.confidence >= least_confidence).any():
+        state.notes.append(
+            "other labels fit nearly as well: the surest has a confidence of "
+            f"{match.confidence.max():.2g}, {least_confidence:g} at least is needed"
+        )
     if match.bodies > 1:
         state.notes.append(
             f"{match.bodies} bodies are in the volume; the one that model {model.name} fits best "
