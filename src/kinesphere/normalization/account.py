@@ -29,8 +29,8 @@ def warnings_of(
         )
     elif crooked := _crooked(alignment, template):
         said.append(
-            f"the body stands in the default position, {', '.join(crooked)} not as they would: "
-            "turned into place by the shortest way, their twist may be off"
+            "the body stands in the default position, but some limbs do not hang as they would; "
+            "turned into place by the shortest way, their twist may be off: " + ", ".join(crooked)
         )
     widest = float(default.spread.max())
     if widest > _WIDE:
