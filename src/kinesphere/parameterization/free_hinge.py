@@ -95,10 +95,11 @@ def _folds(
     if total < FOLDS * SHORTEST * samples.rate:
         return None
     frames = np.concatenate([np.arange(a, b) for a, b in samples.phases])
-    cuts = [int(frames[total * k // FOLDS]) for k in range(FOLDS)] + [int(frames[-1]) + 1]
     folds = []
     for k in range(FOLDS):
-        low, high = cuts[k], cuts[k + 1]
+        # what is too little to be shared out is left out nowhere, whichever way time runs
+        low = int(frames[-(-total * k // FOLDS)])
+        high = int(frames[total * (k + 1) // FOLDS - 1]) + 1
         spans = ((low, high),), ((0, low), (high, len(samples.positions)))
         left_out, kept = (
             tuple(

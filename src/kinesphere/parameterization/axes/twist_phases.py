@@ -8,7 +8,7 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.geometry.rotations import mean_rotation, rotation_log
 from kinesphere.parameterization.arcs import PERCENTILES
-from kinesphere.parameterization.axes.fit import thinned
+from kinesphere.parameterization.axes.fit import thinned, worth
 from kinesphere.parameterization.axes.kernels import turned_between
 from kinesphere.parameterization.confidence import TISSUE
 from kinesphere.parameterization.halves import halves_disagreement
@@ -145,7 +145,7 @@ def _pooled(samples: JointSamples, phases: tuple[Phase, ...]) -> Array | None:
     scatter = np.zeros((3, 3))
     for phase in phases:
         w = _turns(samples, phase)
-        scatter += w.T @ w * thinned(phase).step
+        scatter += w.T @ w * worth(phase, thinned(phase))
     if not scatter.any():
         return None
     axis = np.linalg.eigh(scatter)[1][:, 2]
