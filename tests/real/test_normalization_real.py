@@ -33,8 +33,9 @@ FUNCTIONAL = tuple(
     )
 )  # fmt: skip
 WALKING = (CMU[1], *PLUGIN_GAIT[1:3])
-STANDING = ("plugin-gait/PiG_Calibration-FlatFoot-Full.c3d", *CMU[:1], *CMU[2:], *FUNCTIONAL[1:])
-"""Recordings in which somebody stands with arms hanging, as seen by eye; the rest raise them."""
+STANDING = ("plugin-gait/PiG_Calibration-FlatFoot-Full.c3d", CMU[0], CMU[3], *FUNCTIONAL[1:])
+"""Recordings in which somebody stands with arms hanging, as seen by eye; the rest raise them or
+walk (85_02: forearms at 61°, and 60° is where arms no longer hang)."""
 
 
 @cache

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Motion
-from kinesphere.geometry.even_frames import every_nth
+from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.medians import column_medians
 from kinesphere.geometry.vectors import lengths
 from kinesphere.normalization.anatomy import Anatomy
@@ -106,9 +106,10 @@ class Samples:
         return self.motion.joint_centres(frames)
 
 
-def take_samples(motion: Motion, rate: float, speed_window: float) -> Samples:
-    """Take about every n-th frame, at most ``rate`` (Hz) of them."""
-    frames = every_nth(motion.n_frames, int(np.ceil(motion.rate / rate - 1e-9)))
+def take_samples(motion: Motion, rate: float, speed_window: float, fewest: int = 1) -> Samples:
+    """Take frames spread evenly, at most ``rate`` (Hz) or ``fewest`` of them."""
+    wanted = round(motion.n_frames * min(1.0, rate / motion.rate))
+    frames = even_frames(motion.n_frames, max(wanted, fewest))
     return Samples(motion, Anatomy(motion.skeleton), frames, speed_window)
 
 

@@ -75,9 +75,7 @@ def contradiction(
     return _between(told[0], told[1]), np.minimum(arcs[0], arcs[1])
 
 
-def early_share(
-    samples: JointSamples, labels: Labels, n_axes: int, early: int, late: int
-) -> Array:
+def early_share(samples: JointSamples, labels: Labels, n_axes: int, early: int, late: int) -> Array:
     """Return which share of each axis' moving frames in two halves is in the first, (n_axes,).
 
     The first half ends before the frame ``early``, the second begins with ``late``.
