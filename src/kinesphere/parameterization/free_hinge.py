@@ -7,6 +7,7 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.hinge import hinge_axis
+from kinesphere.parameterization.confidence import with_tissue
 from kinesphere.parameterization.samples import JointSamples, Phase
 
 FOLDS = 4  # parts of the movement, each left out once
@@ -21,7 +22,7 @@ class FreeHinge:
     axis: Array
     """(3,)"""
     uncertainty: float
-    """rad, standard deviation of the direction of the axis (jackknife over the folds)."""
+    """rad, standard deviation of the direction of the axis (jackknife over the folds, and skin)."""
     error: float
     """rad, mean out-of-cone angle in parts that the axis and its cone were not found from."""
     body_error: float
@@ -71,12 +72,15 @@ def free_hinge(samples: JointSamples, body_axis: Array) -> FreeHinge | None:
     middle = across.mean(axis=0)
     azimuth = np.arctan2(np.cross(middle, across) @ axis, across @ middle)
     arc = float(np.diff(np.percentile(azimuth, PERCENTILES))[0])
+    moved = arc * float(np.median(np.linalg.norm(across, axis=1)))
     return FreeHinge(
         axis=axis,
-        uncertainty=float(np.sqrt((FOLDS - 1) / FOLDS * np.sum(np.square(turns)))),
+        uncertainty=float(
+            with_tissue(np.sqrt((FOLDS - 1) / FOLDS * np.sum(np.square(turns))), moved)
+        ),
         error=float(np.concatenate(errors).mean()),
         body_error=float(np.concatenate(body_errors).mean()),
-        moved=arc * float(np.median(np.linalg.norm(across, axis=1))),
+        moved=moved,
     )
 
 

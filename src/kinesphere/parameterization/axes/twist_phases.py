@@ -10,7 +10,7 @@ from kinesphere.geometry.rotations import mean_rotation, rotation_log
 from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.fit import thinned, worth
 from kinesphere.parameterization.axes.kernels import turned_between
-from kinesphere.parameterization.confidence import TISSUE
+from kinesphere.parameterization.confidence import with_tissue
 from kinesphere.parameterization.halves import halves_disagreement
 from kinesphere.parameterization.movement_filter import (
     moving_frames,
@@ -46,7 +46,7 @@ class TwistAxis:
     @property
     def uncertainty(self) -> float:
         """Standard deviation of the axis in rad, as `AxesQuality.uncertainty`."""
-        return float(np.hypot(self.halves / 2, TISSUE / max(self.range, TISSUE)))
+        return float(with_tissue(np.array(self.halves / 2), np.array(self.range)))
 
 
 def find_twist_axis(
