@@ -21,7 +21,7 @@ def test_the_same_frames_from_either_end(n_frames, count):
     if len(found) > 1:
         assert (found[0], found[-1]) == (0, n_frames - 1)
         # a distance rounded up here and down there, once more at the middle
-        assert 0 < np.diff(found).min()
+        assert np.diff(found).min() > 0
         assert np.ptp(np.diff(found)) <= 2
 
 

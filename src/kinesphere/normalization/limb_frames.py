@@ -37,8 +37,8 @@ def canonical_direction(name: str, in_body: Array, *, at_end: bool) -> Array:
 def levelled(points: Array) -> Array:
     """Return a direction without its pitch, (3,) in the body frame; as it is where it is steep.
 
-    A foot without a marker at its heel seems to point down, from the ankle to the toes: by 20° where
-    the same feet with heels are level to 2°. Who stands has it flat on the floor.
+    A foot without a marker at its heel seems to point down, from the ankle to the toes: by 20°
+    where the same feet with heels are level to 2°. Who stands has it flat on the floor.
     """
     level = points * [1.0, 0.0, 1.0]
     length = float(np.linalg.norm(level))

@@ -12,8 +12,8 @@ from kinesphere.parameterization.halves import Finder, halves_disagreement
 from kinesphere.parameterization.samples import JointSamples
 
 TISSUE = np.deg2rad(3.0)
-"""rad, by which skin turns a limb over a movement, be it short or long: two knees of one person were
-1 to 14° off in arcs of 58 to 12°, 3.2° rms over the arc beside what their halves say."""
+"""rad, by which skin turns a limb over a movement, short or long: two knees of one person were 1 to
+14° off in arcs of 58 to 12°, 3.2° rms over the arc beside what their halves say."""
 
 
 def with_tissue(uncertainty: Array, ranges: Array) -> Array:

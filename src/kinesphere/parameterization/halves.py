@@ -102,6 +102,8 @@ def _splits(
     if dealt := _dealt(samples, labels, n_axes):
         splits.append(dealt)
     frames = np.concatenate([np.arange(a, b) for a, b in phases])
+    if len(frames) <= 2 * SHORTEST:
+        return splits
     n_early, first_late = parted(len(frames))
     stop, start = int(frames[n_early - 1]) + 1, int(frames[first_late])
     early = tuple((a, min(b, stop)) for a, b in phases if a < stop - SHORTEST)
