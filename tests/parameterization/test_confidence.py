@@ -67,7 +67,8 @@ def test_the_early_share_counts_frames(rng, calibration, cut):
     samples = calibration(rng).view().samples.with_phases(((0, 40), (50, 60), (60, 100)))
     labels = np.array([0, 1, 1])
     expected = {0: [0, 0], 55: [1, 0.1], 10_000: [1, 1]}[cut]
-    assert_allclose(early_share(samples, labels, 2, cut), expected)
+    assert_allclose(early_share(samples, labels, 2, cut, cut), expected)
+    assert_allclose(early_share(samples, labels, 2, 20, 30), [2 / 3, 0])  # ten frames in neither
 
 
 def test_halves_that_contradict_each_other_enough_end_the_comparing(rng, calibration):

@@ -44,9 +44,10 @@ def doubts(range_deg, halves_deg, off_deg=0.0):
     [
         (80.0, 18.0, False),
         (80.0, 21.0, True),
-        (12.5, 6.0, False),  # 9.7°
-        (12.5, 12.0, True),  # 11.0°, of which the halves say 6°
-        (13.0, 18.0, True),  # 12.6°
+        (18.0, 4.0, False),  # 9.8°
+        (18.0, 12.0, True),  # 11.3°, of which the halves say 6°
+        (19.0, 18.0, True),  # 12.8°
+        (14.0, 7.0, True),  # one short swing of an elbow: 12.8°
     ],
 )
 def test_an_axis_is_doubted_by_the_whole_of_its_uncertainty(range_deg, halves_deg, doubted):
@@ -57,7 +58,7 @@ def test_an_axis_is_doubted_by_the_whole_of_its_uncertainty(range_deg, halves_de
 
 @pytest.mark.parametrize(
     ("range_deg", "off_deg", "doubted"),
-    [(80.0, 4.0, False), (19.0, 1.5, False), (14.0, 4.0, True), (19.0, 8.0, True)],
+    [(80.0, 4.0, False), (19.0, 1.5, False), (18.0, 4.0, True), (19.0, 8.0, True)],
 )
 def test_a_limb_that_leaves_its_cone_wants_a_wide_movement(range_deg, off_deg, doubted):
     found = doubts(range_deg, 2.0, off_deg)

@@ -88,7 +88,7 @@ def test_findings_are_in_the_order_of_the_axes(solved):
         joint = solved.skeleton.joint(f"{side}_shoulder")
         told = findings(solved, f"{side}_shoulder")
         halves, arcs = np.array(told["halves_disagreement_deg"]), np.array(told["ranges_deg"])
-        skin = np.rad2deg(2.0 / arcs)  # what 2° of it do over the arc
+        skin = np.rad2deg(3.0 / arcs)  # what 3° of it do over the arc
         assert_allclose(np.rad2deg(joint.axes_uncertainty), np.hypot(halves / 2, skin))
 
 
@@ -299,7 +299,7 @@ def test_an_unnamed_joint_finds_its_number_of_axes(performance):
         cosines = np.abs(joint.axes @ true.axes.T).max(axis=1)
         assert np.rad2deg(np.arccos(np.minimum(cosines, 1))).max() < AXIS
     for column in np.rad2deg(solved.angles[:, 0, :2]).T:
-        assert column[np.abs(column) > np.abs(column).max() / 2][0] > 0  # first excursion
+        assert np.percentile(column, [5, 95]).sum() > 0  # the larger excursion
 
 
 @pytest.mark.parametrize("n_frames", [0, 1, 2])

@@ -1,9 +1,12 @@
 """Real recordings: joints move as people's do, and doubt is told where movement tells nothing."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 
 from kinesphere.data import Motion, motion_from_parameters
+from kinesphere.geometry.rotations import nearest_rotation
 from kinesphere.io import read
 from kinesphere.labelling import choose_model, match_labels
 from kinesphere.normalization import normalize
@@ -20,6 +23,7 @@ pytestmark = pytest.mark.real
 
 DISAGREE = 10.0  # deg, from which on no joint keeps its own axes unsaid
 KNEE_RESIDUAL = 5e-3  # m, functional knees about their one axis
+TOLD = 1.5  # times, rms: six pairs that three trials a knee make
 MIRRORED = 10.0  # deg, between a left knee's axis and the image of the right one's
 
 
@@ -85,6 +89,35 @@ def test_left_and_right_knees_are_mirror_images(knees):
     right = knees["right"].skeleton.joint("right_knee").axes[0]
     image = -right * [1, 1, -1]
     assert np.rad2deg(np.arccos(left @ image)) < MIRRORED
+
+
+def test_knees_of_one_person_differ_between_trials_as_much_as_is_told(recordings, knees):
+    """From arcs of 25 to 133°, laid upon each other by the markers of the thighs."""
+    trials = [*knees.values()]
+    for name in ("Test_func_lankle", "Test_func_rankle"):
+        trials.append(parameterize(motion_of(recordings / "functional" / f"{name}.c3d")))
+    shares = []
+    for side in ("left", "right"):
+        found = [parameters.skeleton.joint(f"{side}_knee") for parameters in trials]
+        thighs = [parameters.skeleton.limb(f"{side}_thigh") for parameters in trials]
+        own = [i for i, joint in enumerate(found) if joint.axes_source == "movement"]
+        assert len(own) == 3
+        for i, j in combinations(own, 2):
+            axis = thigh_from_thigh(thighs[i], thighs[j]) @ found[i].axes[0]
+            off = np.arccos(min(1.0, abs(axis @ found[j].axes[0])))
+            shares.append(off / np.hypot(found[i].axes_uncertainty, found[j].axes_uncertainty)[0])
+    assert np.sqrt(np.mean(np.square(shares))) < TOLD
+
+
+def thigh_from_thigh(limb, other):
+    """Return the rotation from one limb's frame to another's by the markers of both, (3, 3)."""
+    both = sorted(set(limb.markers) & set(other.markers))
+    points, others = (
+        np.array([each.marker_positions[each.markers.index(m)] for m in both])
+        for each in (limb, other)
+    )
+    sides = (others - others.mean(axis=0)).T @ (points - points.mean(axis=0))
+    return nearest_rotation(sides)
 
 
 def test_the_trunk_trial_shows_bending_forward_and_sideways_and_turning(recordings):

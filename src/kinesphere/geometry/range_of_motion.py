@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.rotations import mean_rotation, rotation_angle
 
 Array = NDArray[np.float64]
@@ -26,15 +27,8 @@ def range_of_motion(relative: Array) -> float:
     known = relative[np.isfinite(relative).all(axis=(1, 2))]
     if len(known) < 2:
         return 0.0
-    known = known[spread_sample(len(known))]
+    known = known[even_frames(len(known), RANGE_SAMPLE)]
     off = rotation_angle(mean_rotation(known).T @ known)
     usual = known[off <= np.quantile(off, 0.95)]
     trace = np.einsum("aij,bij->ab", usual, usual)
     return float(np.arccos(np.clip((trace.min() - 1) / 2, -1.0, 1.0)))
-
-
-def spread_sample(count: int) -> NDArray[np.intp]:
-    """Return `RANGE_SAMPLE` indices at most, evenly among ``count``."""
-    return np.unique(
-        np.linspace(0, max(count - 1, 0), min(count, RANGE_SAMPLE)).round().astype(int)
-    )

@@ -22,7 +22,7 @@ from kinesphere.normalization.settings import NormalizationSettings
 
 _SHARE, _MOST_SHARED = 0.1, 1.0  # of the best cost: where nothing is good, differences count less
 _STRIDE = 0.5  # of the best cost: enough to reach over a whole stride
-_ALIKE, _FEWEST = 0.5, 10  # share of a stride's frames that serve in the end, where there are many
+_ALIKE, _LEAST = 0.5, 1.0  # share of a stride's frames that serve in the end, if they last so long
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ def find_default_frames(
     if settings.frames == "many" and not proposal.only_best:
         chosen = cost <= cost[best] + _margin(samples, position, best, cost[best], settings)
     mean = robust_mean_rotations(bodies[chosen][:, None])[0]
-    if _strides(samples, position, best, settings) and chosen.sum() >= _FEWEST:
+    if _strides(samples, position, best, settings) and chosen.sum() >= _LEAST * samples.rate:
         # in the mean of strides pelvis and shoulders face alike: so they do in the nearest half
         apart = np.where(chosen, rotation_angle(mean.T @ bodies), np.inf)
         chosen = apart <= np.quantile(apart[chosen], _ALIKE)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Motion
+from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.medians import column_medians
 from kinesphere.geometry.vectors import lengths
 from kinesphere.normalization.anatomy import Anatomy
@@ -19,7 +20,7 @@ _UPRIGHT = np.cos(np.deg2rad(45.0))  # of the trunk's tilt from which it no long
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Every so many frames of a motion."""
+    """Frames of a motion, spread evenly over it."""
 
     motion: Motion
     anatomy: Anatomy
@@ -31,8 +32,7 @@ class Samples:
     @property
     def rate(self) -> float:
         """Hz, of the samples."""
-        step = self.frames[1] - self.frames[0] if len(self.frames) > 1 else 1
-        return float(self.motion.rate / step)
+        return float(self.motion.rate * len(self.frames) / max(1, self.motion.n_frames))
 
     @cached_property
     def rotations(self) -> Array:
@@ -106,10 +106,10 @@ class Samples:
         return self.motion.joint_centres(frames)
 
 
-def take_samples(motion: Motion, rate: float, speed_window: float) -> Samples:
-    """Take every n-th frame, at most ``rate`` (Hz) of them."""
-    step = max(1, int(np.ceil(motion.rate / rate - 1e-9)))
-    frames = np.arange(0, motion.n_frames, step)
+def take_samples(motion: Motion, rate: float, speed_window: float, fewest: int = 1) -> Samples:
+    """Take frames spread evenly, at most ``rate`` (Hz) or ``fewest`` of them."""
+    wanted = round(motion.n_frames * min(1.0, rate / motion.rate))
+    frames = even_frames(motion.n_frames, max(wanted, fewest))
     return Samples(motion, Anatomy(motion.skeleton), frames, speed_window)
 
 

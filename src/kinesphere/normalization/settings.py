@@ -52,6 +52,14 @@ class NormalizationSettings:
     sampling: float = setting(
         10.0, "frames looked at, at most", unit="Hz", low=0.1, high=1000.0, source=_TRIED
     )
+    fewest: int = setting(
+        600,
+        "a recording of no more frames is looked at in all of them, of a longer one in as many at "
+        "least: who never stands still is no other person for a frame more or less",
+        low=1,
+        high=1_000_000,
+        source=_TRIED,
+    )
     smoothing: float = setting(
         0.3, "window over which the cost is averaged", unit="s", low=0.0, high=10.0
     )

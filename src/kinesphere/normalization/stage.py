@@ -47,7 +47,7 @@ def normalize(
         If ``facing`` is no known word.
     """
     settings = settings or NormalizationSettings()
-    samples = take_samples(motion, settings.sampling, settings.speed_window)
+    samples = take_samples(motion, settings.sampling, settings.speed_window, settings.fewest)
     proposal = propose_bodies(samples, settings, facing)
     default = find_default_frames(samples, proposal, settings)
     world_from_root = samples.rotations[:, 0]

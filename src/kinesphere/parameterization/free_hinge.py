@@ -7,6 +7,7 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.hinge import hinge_axis
+from kinesphere.parameterization.confidence import with_tissue
 from kinesphere.parameterization.samples import JointSamples, Phase
 
 FOLDS = 4  # parts of the movement, each left out once
@@ -21,7 +22,7 @@ class FreeHinge:
     axis: Array
     """(3,)"""
     uncertainty: float
-    """rad, standard deviation of the direction of the axis (jackknife over the folds)."""
+    """rad, standard deviation of the direction of the axis (jackknife over the folds, and skin)."""
     error: float
     """rad, mean out-of-cone angle in parts that the axis and its cone were not found from."""
     body_error: float
@@ -71,12 +72,15 @@ def free_hinge(samples: JointSamples, body_axis: Array) -> FreeHinge | None:
     middle = across.mean(axis=0)
     azimuth = np.arctan2(np.cross(middle, across) @ axis, across @ middle)
     arc = float(np.diff(np.percentile(azimuth, PERCENTILES))[0])
+    moved = arc * float(np.median(np.linalg.norm(across, axis=1)))
     return FreeHinge(
         axis=axis,
-        uncertainty=float(np.sqrt((FOLDS - 1) / FOLDS * np.sum(np.square(turns)))),
+        uncertainty=float(
+            with_tissue(np.sqrt((FOLDS - 1) / FOLDS * np.sum(np.square(turns))), moved)
+        ),
         error=float(np.concatenate(errors).mean()),
         body_error=float(np.concatenate(body_errors).mean()),
-        moved=arc * float(np.median(np.linalg.norm(across, axis=1))),
+        moved=moved,
     )
 
 
@@ -95,10 +99,11 @@ def _folds(
     if total < FOLDS * SHORTEST * samples.rate:
         return None
     frames = np.concatenate([np.arange(a, b) for a, b in samples.phases])
-    cuts = [int(frames[total * k // FOLDS]) for k in range(FOLDS)] + [int(frames[-1]) + 1]
     folds = []
     for k in range(FOLDS):
-        low, high = cuts[k], cuts[k + 1]
+        # what is too little to be shared out is left out nowhere, whichever way time runs
+        low = int(frames[-(-total * k // FOLDS)])
+        high = int(frames[total * (k + 1) // FOLDS - 1]) + 1
         spans = ((low, high),), ((0, low), (high, len(samples.positions)))
         left_out, kept = (
             tuple(

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.geometry.even_frames import parted
 from kinesphere.parameterization.arcs import arcs_about, labelled
 from kinesphere.parameterization.axes.fit import Labels, phase_swing
 from kinesphere.parameterization.samples import JointSamples, Phase
@@ -74,13 +75,16 @@ def contradiction(
     return _between(told[0], told[1]), np.minimum(arcs[0], arcs[1])
 
 
-def early_share(samples: JointSamples, labels: Labels, n_axes: int, cut: int) -> Array:
-    """Return the share of each axis' moving frames that lies before a frame, (n_axes,)."""
-    early, length = np.zeros(n_axes), np.zeros(n_axes)
+def early_share(samples: JointSamples, labels: Labels, n_axes: int, early: int, late: int) -> Array:
+    """Return which share of each axis' moving frames in two halves is in the first, (n_axes,).
+
+    The first half ends before the frame ``early``, the second begins with ``late``.
+    """
+    before, after = np.zeros(n_axes), np.zeros(n_axes)
     for (a, b), label in labelled(samples, labels):
-        early[label] += max(0, min(b, cut) - a)
-        length[label] += b - a
-    return np.asarray(early / np.maximum(length, 1))
+        before[label] += max(0, min(b, early) - a)
+        after[label] += max(0, b - max(a, late))
+    return np.asarray(before / np.maximum(before + after, 1))
 
 
 def _splits(
@@ -91,25 +95,46 @@ def _splits(
         return []
     splits = [
         (
-            tuple((a, (a + b) // 2) for a, b in phases if b - a >= 4),
-            tuple(((a + b) // 2, b) for a, b in phases if b - a >= 4),
+            tuple((a, a + parted(b - a)[0]) for a, b in phases if b - a >= 4),
+            tuple((a + parted(b - a)[1], b) for a, b in phases if b - a >= 4),
         )
     ]
-    dealt: tuple[list[Phase], list[Phase]] = ([], [])
-    turn = [0] * n_axes
-    for phase, label in labelled(samples, labels):
-        dealt[turn[label] % 2].append(phase)
-        turn[label] += 1
-    if min(turn) >= 2:
-        splits.append((tuple(dealt[0]), tuple(dealt[1])))
+    if dealt := _dealt(samples, labels, n_axes):
+        splits.append(dealt)
     frames = np.concatenate([np.arange(a, b) for a, b in phases])
-    cut = int(np.median(frames))
-    early = tuple((a, min(b, cut)) for a, b in phases if a < cut - SHORTEST)
-    late = tuple((max(a, cut), b) for a, b in phases if b > cut + SHORTEST)
-    share = early_share(samples, labels, n_axes, cut)
+    if len(frames) <= 2 * SHORTEST:
+        return splits
+    n_early, first_late = parted(len(frames))
+    stop, start = int(frames[n_early - 1]) + 1, int(frames[first_late])
+    early = tuple((a, min(b, stop)) for a, b in phases if a < stop - SHORTEST)
+    late = tuple((max(a, start), b) for a, b in phases if b > start + SHORTEST)
+    share = early_share(samples, labels, n_axes, stop, start)
     if (np.abs(share - 0.5) <= 0.5 - LEAST_SHARE).all():
         splits.append((early, late))
     return splits
+
+
+def _dealt(
+    samples: JointSamples, labels: Labels, n_axes: int
+) -> tuple[tuple[Phase, ...], tuple[Phase, ...]] | None:
+    """Return the phases of each axis dealt out in turn; None where an axis has but one.
+
+    Of each axis the longer hand goes first: which one starts depends on the direction of time.
+    """
+    first: list[Phase] = []
+    second: list[Phase] = []
+    for k in range(n_axes):
+        mine = [phase for phase, label in labelled(samples, labels) if label == k]
+        if len(mine) < 2:
+            return None
+        hands = sorted((mine[::2], mine[1::2]), key=_frames_in, reverse=True)
+        first += hands[0]
+        second += hands[1]
+    return tuple(sorted(first)), tuple(sorted(second))
+
+
+def _frames_in(phases: list[Phase]) -> int:
+    return sum(b - a for a, b in phases)
 
 
 def _matched(found: Array, axes: Array) -> Array:

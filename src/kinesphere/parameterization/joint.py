@@ -14,6 +14,7 @@ from kinesphere.parameterization.anatomy import (
     substitute_axes,
 )
 from kinesphere.parameterization.angles import JointAngles, solve_angles
+from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.fit import moving_positions
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.confidence import AxesQuality, observed_n_axes
@@ -120,7 +121,7 @@ def fit_joint(
             axes, uncertainty = np.array([across, axes[0]]), np.array([np.nan, uncertainty[0]])
             added = f"{spread:.0f}°"
     if joint_kind(view.name) is None:
-        axes = first_excursion_positive(view, axes, rest, settings)
+        axes = larger_excursion_positive(view, axes, rest, settings)
     findings: dict[str, Json] = {
         "n_axes": len(axes),
         "n_axes_by_data": observed,
@@ -196,16 +197,16 @@ def _height(view: JointView, axis: Array) -> Array:
     return np.array([float(np.median(moving @ axis))])
 
 
-def first_excursion_positive(
+def larger_excursion_positive(
     view: JointView, axes: Array, rest: Array, settings: ParameterizationSettings
 ) -> Array:
-    """Return axes turned so that the first large angle about each is positive."""
+    """Return axes turned so that the limb goes farther to the positive side of each."""
     angles = solve_joint(view, axes, rest, settings).angles[:, : len(axes)]
     signs = np.ones(len(axes))
     for k, column in enumerate(angles.T):
         known = column[np.isfinite(column)]
-        if len(known) and (largest := np.abs(known).max()) > 0:
-            signs[k] = np.sign(known[np.abs(known) >= largest / 2][0])
+        if len(known) and np.percentile(known, PERCENTILES).sum() < 0:
+            signs[k] = -1.0
     return axes * signs[:, None]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.geometry.rotations import rotation_log
-from kinesphere.parameterization.axes.fit import phase_swing, thinned
+from kinesphere.parameterization.axes.fit import phase_swing, thinned, worth
 from kinesphere.parameterization.samples import JointSamples, Phase
 from kinesphere.parameterization.settings import AxesSettings
 
@@ -61,17 +61,21 @@ def best_cut(samples: JointSamples, phase: Phase) -> int | None:
     shortest = int(np.ceil(SHORTEST * samples.rate))
     if stop - start < 2 * shortest:
         return None
-    step = max(1, round(STEP * samples.rate))
-    stride = max(1, (stop - start) // MOST_TRIALS)
-    first = np.arange(start, stop - step, stride)
-    frames = first + step // 2
+    half = max(1, round(STEP * samples.rate / 2))
+    # cuts lie between places: those are an odd stride apart, and as far from either end
+    stride = (stop - start) // MOST_TRIALS // 2 * 2 + 1
+    places = stop - start - 2 * half
+    count = (places - 1) // stride + 1
+    count -= (places - 1 - (count - 1) * stride) % 2
+    frames = start + half + (places - 1 - (count - 1) * stride) // 2 + stride * np.arange(count)
     q, p = samples.rotations, samples.positions
-    turns = rotation_log(q[first + step] @ np.swapaxes(q[first], -1, -2))
+    turns = rotation_log(q[frames + half] @ np.swapaxes(q[frames - half], -1, -2))
     turns -= (turns * p[frames]).sum(axis=1, keepdims=True) * p[frames]
     before = np.cumsum(turns[:, :, None] * turns[:, None, :], axis=0)
     explained = _largest(before) + _largest(before[-1] - before)
-    explained[(frames < start + shortest) | (frames > stop - shortest)] = -1.0
-    return int(frames[explained.argmax()])
+    cuts = frames + stride // 2 + 1
+    explained[(cuts < start + shortest) | (cuts > stop - shortest)] = -1.0
+    return int(cuts[explained.argmax()])
 
 
 def _largest(matrices: Array) -> Array:
@@ -89,5 +93,5 @@ def _extent(samples: JointSamples, phase: Phase) -> float:
     """Return how far the limb moves about the main axis of a phase, in rad."""
     w = phase_swing(samples, phase).vectors
     axis = np.linalg.eigh(w.T @ w)[1][:, 2]
-    angles = w @ axis / np.sqrt(thinned(phase).step)
+    angles = w @ axis / np.sqrt(worth(phase, thinned(phase)))
     return float(np.diff(np.percentile(angles, PERCENTILES))[0])

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.geometry.even_frames import parted
 from kinesphere.parameterization.anatomy import nominal_axes
 from kinesphere.parameterization.angles import two_axis_angles
 from kinesphere.parameterization.arcs import PERCENTILES
@@ -126,7 +127,7 @@ def _judged(
     if not doubts:
         halves = (half.samples for half in view_halves(view, settings))
         off, arcs = contradiction(halves, axes, search)
-        shares = early_share(samples, quality.labels, n_axes, len(positions) // 2)
+        shares = early_share(samples, quality.labels, n_axes, *parted(len(positions)))
         comparable = arcs >= COMPARABLE * quality.ranges
         if n_axes > 1:  # main movements are made one after another: a half may lack one
             comparable &= np.abs(shares - 0.5) <= 0.5 - LEAST_SHARE

@@ -8,7 +8,11 @@ from scipy.signal import butter, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array, Mask
-from kinesphere.geometry.rotations import quaternions_from_rotations, rotation_angle
+from kinesphere.geometry.rotations import (
+    nearest_rotation,
+    quaternions_from_rotations,
+    rotation_angle,
+)
 
 Frames = NDArray[np.intp]
 Phase = tuple[int, int]
@@ -76,7 +80,9 @@ SPIKE_RATIO = 5.0  # times the step from the frame before to the frame after
 
 
 def without_spikes(rotations: Array, rate: float) -> Array:
-    """Return rotations, (n, 3, 3), with single frames that jump away and back taken as before.
+    """Return rotations, (n, 3, 3), with single frames that jump away and back taken out.
+
+    Each is replaced by the middle of the frames before and after.
 
     A swapped or misplaced marker makes such frames; a low-pass would smear them over a movement's
     length. Only what axes are found from is mended so, never the delivered angles.
@@ -95,12 +101,14 @@ def without_spikes(rotations: Array, rate: float) -> Array:
     with np.errstate(invalid="ignore"):
         at = at[np.minimum(away, back) > np.maximum(SPIKE / rate, SPIKE_RATIO * across)]
     mended = rotations.copy()
-    mended[at] = rotations[at - 1]
+    mended[at] = nearest_rotation(rotations[at - 1] + rotations[at + 1])
     return mended
 
 
 def smooth_rotations(rotations: Array, rate: float, cutoff: float) -> Array:
     """Low-pass rotations with a second-order Butterworth filter run both ways (zero phase).
+
+    Once forward first and once backward first, and the mean of both: at the ends they differ.
 
     Frames that jump away and back are mended first, see `without_spikes`.
     Quaternions of one sign are filtered component by component and normalized, which agrees with
@@ -130,6 +138,6 @@ def smooth_rotations(rotations: Array, rate: float, cutoff: float) -> Array:
         flips = np.where((q[1:] * q[:-1]).sum(axis=1) < 0, -1.0, 1.0)
         q[1:] *= np.cumprod(flips)[:, None]
         padding = min(stop - start - 1, int(np.ceil(rate / cutoff)))
-        q = sosfiltfilt(sos, q, axis=0, padlen=padding)
-        smooth[start:stop] = Rotation.from_quat(q).as_matrix()
+        there, back = (sosfiltfilt(sos, x, axis=0, padlen=padding) for x in (q, q[::-1]))
+        smooth[start:stop] = Rotation.from_quat(there + back[::-1]).as_matrix()
     return smooth

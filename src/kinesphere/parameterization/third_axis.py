@@ -19,8 +19,8 @@ from kinesphere.parameterization.joint import (
     JointFit,
     angles_between,
     asked_n_axes,
-    first_excursion_positive,
     fit_joint,
+    larger_excursion_positive,
 )
 from kinesphere.parameterization.samples import Phase
 from kinesphere.parameterization.second_axis import second_axis
@@ -146,7 +146,7 @@ def _joined(
     if closest > np.cos(np.deg2rad(settings.axes.smallest_angle)):
         return None
     if body is None:
-        axes = first_excursion_positive(view, axes, fit.rest, settings)
+        axes = larger_excursion_positive(view, axes, fit.rest, settings)
     uncertainty = np.array([twist.uncertainty, *uncertainty])
     halves = float(np.rad2deg(twist.halves))
     own = (float(np.rad2deg(twist.range)), twist.conditioning, halves)

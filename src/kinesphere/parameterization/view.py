@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinesphere.data import Array, Codes, Mask, PoseFlag
+from kinesphere.geometry.even_frames import parted
 from kinesphere.parameterization.movement_filter import Movement, find_movement
 from kinesphere.parameterization.samples import JointSamples, runs, smooth_rotations
 from kinesphere.parameterization.settings import ParameterizationSettings
@@ -104,8 +105,9 @@ def view_joint(
 def view_halves(view: JointView, settings: ParameterizationSettings) -> tuple[JointView, JointView]:
     """Return the joint as each half of its calibration alone would show it."""
     frames = np.flatnonzero(view.calibration)
-    middle = frames[len(frames) // 2] if len(frames) else 0
-    before = np.arange(len(view.calibration)) < middle
+    n_early, first_late = parted(len(frames))
+    early, late = np.zeros((2, len(view.calibration)), dtype=bool)
+    early[frames[:n_early]] = late[frames[first_late:]] = True
     first, second = (
         view_joint(
             view.name,
@@ -113,10 +115,10 @@ def view_halves(view: JointView, settings: ParameterizationSettings) -> tuple[Jo
             view.long_axis,
             view.twist_known,
             view.samples.rate,
-            view.calibration & half,
+            half,
             settings,
             view.human,
         )
-        for half in (before, ~before)
+        for half in (early, late)
     )
     return first, second

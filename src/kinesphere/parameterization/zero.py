@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.geometry.even_frames import every_nth
 from kinesphere.geometry.rotations import mean_rotation, rotation_about, rotation_between
 from kinesphere.parameterization.anatomy import joint_kind, named_axes
 from kinesphere.parameterization.angles import solve_angles, two_axis_angles
@@ -117,7 +118,7 @@ def reach_and_twist(
 ) -> tuple[float, float]:
     """Return the share of frames out of reach (in whole percent) and the rms twist in rad."""
     at = np.flatnonzero(np.isfinite(view.rotations[:, 0, 0]))
-    at = at[:: max(1, len(at) // TRIAL_FRAMES)]
+    at = at[every_nth(len(at), len(at) // TRIAL_FRAMES)]
     solved = solve_angles(
         view.rotations[at],
         axes,

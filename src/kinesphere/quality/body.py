@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from kinesphere.data import Array, Recording, TopologicalModel
+from kinesphere.geometry.even_frames import every_nth
 from kinesphere.geometry.vectors import is_seen, lengths
 
 HEAD = (
@@ -65,14 +66,16 @@ class Body:
 
 
 def thinned(recording: Recording, most: int) -> Recording:
-    """Return every n-th frame, at most ``most``: markers and labels alone, at a lower rate.
+    """Return frames spread evenly, about ``most``: markers and labels alone, at a lower rate.
 
     What holds of most of a long recording shows in some thousand of its frames.
     """
     step = -(-recording.n_frames // most)
     if step <= 1:
         return recording
-    return Recording(recording.markers[::step], recording.labels, recording.rate / step)
+    frames = every_nth(recording.n_frames, step)
+    rate = recording.rate * len(frames) / recording.n_frames
+    return Recording(recording.markers[frames], recording.labels, rate)
 
 
 def find_bodies(recording: Recording) -> tuple[Body, ...]:

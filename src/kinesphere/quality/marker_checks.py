@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from kinesphere.data import Array, Recording
+from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.vectors import is_seen, lengths
 from kinesphere.quality.body import labelled_columns, thinned
 from kinesphere.quality.findings import Finding
@@ -109,8 +110,7 @@ def _stands(points: Array) -> bool:
 def check_coincident(recording: Recording) -> Iterator[Finding]:
     """Find pairs that share one place in half the frames that have both."""
     labelled = labelled_columns(recording)
-    wanted = min(SAMPLED_FRAMES, recording.n_frames)
-    frames = np.unique(np.linspace(0, recording.n_frames - 1, wanted).astype(int))
+    frames = even_frames(recording.n_frames, SAMPLED_FRAMES)
     points = recording.markers[frames][:, labelled]
     for i in range(len(labelled) - 1):
         distances = lengths(points[:, i + 1 :] - points[:, i : i + 1])

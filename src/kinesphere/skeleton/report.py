@@ -3,7 +3,8 @@
 import numpy as np
 
 from kinesphere.data import Array, Joint, Limb, Observability, PoseFlag
-from kinesphere.geometry.range_of_motion import range_of_motion, spread_sample
+from kinesphere.geometry.even_frames import even_frames
+from kinesphere.geometry.range_of_motion import RANGE_SAMPLE, range_of_motion
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import unit
 from kinesphere.skeleton.chain import MeasuredJoint
@@ -43,7 +44,7 @@ def describe_joint(
 def _relative(parent: Poses, child: Poses) -> Array:
     """Return ``parent_from_child`` in frames spread over those that show both, (n, 3, 3)."""
     both = np.flatnonzero((parent.flags != PoseFlag.UNSEEN) & (child.flags != PoseFlag.UNSEEN))
-    at = both[spread_sample(len(both))]
+    at = both[even_frames(len(both), RANGE_SAMPLE)]
     relative: Array = np.swapaxes(parent.rotations[at], 1, 2) @ child.rotations[at]
     return relative
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array
+from kinesphere.geometry.even_frames import every_nth
 from kinesphere.geometry.rotations import mean_rotation, tangent_basis
 from kinesphere.parameterization.axes.stratify import turning_weights
 from kinesphere.parameterization.samples import JointSamples, Phase
@@ -61,11 +62,10 @@ class ConeAndTwist:
         """
         length = sum(b - a for a, b in phases)
         stride = max(1, length // most)
-        parts = [samples.rotations[a:b:stride] for a, b in phases]
+        parts = [samples.rotations[a + every_nth(b - a, stride)] for a, b in phases]
         weights = np.ones(sum(len(part) for part in parts))
         if cell > 0:
-            each = [turning_weights(np.ascontiguousarray(part), cell) for part in parts]
-            weights = np.concatenate(each)
+            weights = np.concatenate([_turning(part, cell) for part in parts])
         counts = [len(part) for part in parts]
         means = [mean_rotation(part) for part in parts]
         turns = [part @ mean.T for part, mean in zip(parts, means, strict=True)]
@@ -116,6 +116,13 @@ class Cone:
     """rad."""
     deviation: float
     """rad."""
+
+
+def _turning(rotations: Array, cell: float) -> Array:
+    """Return how much each rotation counts by how far it turns, (n, 3, 3) → (n,)."""
+    there = turning_weights(np.ascontiguousarray(rotations), cell)
+    back = turning_weights(np.ascontiguousarray(rotations[::-1]), cell)
+    return (there + back[::-1]) / 2
 
 
 def likeliest_axis(

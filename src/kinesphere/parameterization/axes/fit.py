@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array
+from kinesphere.geometry.even_frames import every_nth
 from kinesphere.geometry.rotations import mean_rotation, rotation_log
-from kinesphere.parameterization.samples import JointSamples, Phase
+from kinesphere.parameterization.samples import Frames, JointSamples, Phase
 from kinesphere.parameterization.settings import AxesSettings
 
 Labels = NDArray[np.intp]
@@ -46,7 +47,7 @@ def phase_scatter(samples: JointSamples) -> PhaseScatter:
         frames = thinned(phase)
         rotations = samples.rotations[frames]
         w = rotation_log(rotations @ mean_rotation(rotations).T)
-        scatter[i] = w.T @ w * frames.step
+        scatter[i] = w.T @ w * worth(phase, frames)
     values, vectors = np.linalg.eigh(scatter)
     return PhaseScatter(scatter, values[:, ::-1], vectors[:, :, 2])
 
@@ -150,13 +151,18 @@ def phase_swing(samples: JointSamples, phase: Phase) -> Swing:
     w = rotation_log(rotations @ mean_rotation(rotations).T)
     p = samples.positions[frames].mean(axis=0)
     p /= max(float(np.linalg.norm(p)), 1e-9)
-    return Swing(np.sqrt(frames.step) * (w - np.outer(w @ p, p)), p)
+    return Swing(np.sqrt(worth(phase, frames)) * (w - np.outer(w @ p, p)), p)
 
 
-def thinned(phase: Phase) -> slice:
-    """Return the frames of a phase, evenly thinned where there are very many."""
+def thinned(phase: Phase) -> Frames:
+    """Return the frames of a phase, (n,), evenly thinned where there are very many."""
     start, stop = phase
-    return slice(start, stop, max(1, (stop - start) // MOST_FRAMES))
+    return start + every_nth(stop - start, (stop - start) // MOST_FRAMES)
+
+
+def worth(phase: Phase, frames: Frames) -> float:
+    """Return for how many frames of a phase each of some of them stands."""
+    return (phase[1] - phase[0]) / len(frames)
 
 
 def phase_labels(samples: JointSamples, axes: Array) -> Labels:

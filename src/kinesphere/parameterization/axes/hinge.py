@@ -43,5 +43,6 @@ def hinge_axis(samples: JointSamples, starts: Array) -> Array:
 
 def _arc(parts: list[Array]) -> float:
     """Return how far the limb goes from one side to the other in its longest movement, rad."""
-    chords = (np.linalg.norm(part - part[0], axis=1).max() for part in parts)
+    ends = [(part, end) for part in parts for end in (part[0], part[-1])]
+    chords = (np.linalg.norm(part - end, axis=1).max() for part, end in ends)
     return float(2 * np.arcsin(min(1.0, max(chords) / 2)))

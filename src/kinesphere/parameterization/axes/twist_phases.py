@@ -8,9 +8,9 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.geometry.rotations import mean_rotation, rotation_log
 from kinesphere.parameterization.arcs import PERCENTILES
-from kinesphere.parameterization.axes.fit import thinned
+from kinesphere.parameterization.axes.fit import thinned, worth
 from kinesphere.parameterization.axes.kernels import turned_between
-from kinesphere.parameterization.confidence import TISSUE
+from kinesphere.parameterization.confidence import with_tissue
 from kinesphere.parameterization.halves import halves_disagreement
 from kinesphere.parameterization.movement_filter import (
     moving_frames,
@@ -46,7 +46,7 @@ class TwistAxis:
     @property
     def uncertainty(self) -> float:
         """Standard deviation of the axis in rad, as `AxesQuality.uncertainty`."""
-        return float(np.hypot(self.halves / 2, TISSUE / max(self.range, TISSUE)))
+        return float(with_tissue(np.array(self.halves / 2), np.array(self.range)))
 
 
 def find_twist_axis(
@@ -145,7 +145,7 @@ def _pooled(samples: JointSamples, phases: tuple[Phase, ...]) -> Array | None:
     scatter = np.zeros((3, 3))
     for phase in phases:
         w = _turns(samples, phase)
-        scatter += w.T @ w * thinned(phase).step
+        scatter += w.T @ w * worth(phase, thinned(phase))
     if not scatter.any():
         return None
     axis = np.linalg.eigh(scatter)[1][:, 2]

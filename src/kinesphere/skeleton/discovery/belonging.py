@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.rigid import into_frame
 from kinesphere.skeleton.body import measure_shape, robust_rms
 from kinesphere.skeleton.discovery.forest import Forest
@@ -60,8 +61,7 @@ def measure_belonging(
     owner, steady = owners(bodies, n), steadiness(rigidity.wander, bodies)
     own = np.where(owner >= 0, steady[np.arange(n), owner], np.nan)
     least, neighbour = np.full(n, np.inf), np.full(n, -1)
-    count = min(FRAMES, len(rigidity.points))
-    points = rigidity.points[np.unique(np.linspace(0, len(rigidity.points) - 1, count).astype(int))]
+    points = rigidity.points[even_frames(len(rigidity.points), FRAMES)]
     for b, members in enumerate(bodies):
         near = forest.neighbours(b)
         if not near:

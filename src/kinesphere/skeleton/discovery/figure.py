@@ -8,6 +8,7 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.geometry.algebraic_centres import score_centre, sphere_centre
+from kinesphere.geometry.even_frames import every_nth
 from kinesphere.geometry.rigid import RigidFit, into_frame, out_of_frame
 from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.discovery.joint_costs import JointCosts, Members
@@ -22,7 +23,7 @@ radian the motion says less."""
 
 
 THINNED = 3
-"""Every so many frames of those joints were found on make a figure: a median needs no more."""
+"""About every third frame of those joints were found on make a figure: a median needs no more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,6 +109,7 @@ def make_figure(
         Two bodies → where they meet, as far as it is known from other figures; added to.
     """
     places = {} if places is None else places
+    few = every_nth(len(costs.points), THINNED)
     beside: list[list[int]] = [[] for _ in bodies]
     joints = {}
     for a, b in edges:
@@ -116,9 +118,9 @@ def make_figure(
         pair = frozenset((a, b))
         if pair not in places:
             over = shared.get(pair, ())
-            places[pair] = joint_place(costs, bodies[a], bodies[b], over)[::THINNED]
+            places[pair] = joint_place(costs, bodies[a], bodies[b], over)[few]
         joints[pair] = places[pair]
-    clouds = tuple(costs.points[::THINNED, members] for members in bodies)
+    clouds = tuple(costs.points[few][:, members] for members in bodies)
     return Figure(
         beside=tuple(tuple(sorted(others)) for others in beside),
         middles=np.stack([mean_seen(cloud, axis=1) for cloud in clouds], axis=1),

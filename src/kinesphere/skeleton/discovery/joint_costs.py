@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array
+from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.rigid import RigidFit
 from kinesphere.skeleton.averages import median_seen
 from kinesphere.skeleton.topology import JointView, joint_view, limb_poses
@@ -29,8 +30,7 @@ class JointCosts:
     def __init__(self, points: Array, unit: float = 1.0) -> None:
         """Take (n_sample, n, 3) m at a person's size, and how many times larger the subject is."""
         self.unit = unit
-        count = min(FRAMES, len(points))
-        self.points = points[np.unique(np.linspace(0, len(points) - 1, count).astype(int))]
+        self.points = points[even_frames(len(points), FRAMES)]
         self._poses: dict[tuple[int, ...], RigidFit | None] = {}
         self._costs: dict[tuple[tuple[int, ...], tuple[int, ...]], float] = {}
 

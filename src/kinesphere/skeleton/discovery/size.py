@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array
+from kinesphere.geometry.even_frames import even_frames
 from kinesphere.skeleton.averages import median_seen
 
 PERSON = 0.8
@@ -64,8 +65,7 @@ def from_the_middle(markers: Array) -> NDArray[np.intp]:
 
 
 def _spread(markers: Array) -> Array:
-    count = min(FRAMES, len(markers))
-    return np.asarray(markers[np.unique(np.linspace(0, len(markers) - 1, count).astype(int))])
+    return np.asarray(markers[even_frames(len(markers), FRAMES)])
 
 
 def _apart(points: Array) -> Array:
