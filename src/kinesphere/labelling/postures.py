@@ -23,8 +23,8 @@ SEED = 1681
 def postures_of(model: TopologicalModel, labels: tuple[str, ...], mean: Array) -> Array:
     """Return the markers of a layout in random postures, (POSTURES, n_labels, 3).
 
-    The first is the mean shape itself. Markers that belong to no segment stay where the root is.
-    As distances know no mirror, all postures may be mirrored, together.
+    The first is the mean shape itself; the root stays where it is there. As distances know no
+    mirror, all postures may be mirrored, together.
 
     Parameters
     ----------

@@ -17,8 +17,6 @@ DISTANCE_SHARE = 0.12
 """Spread between people of a mean distance, as a share of it, beside that between postures."""
 DISTANCE_FLOOR = 0.008
 """And at least, in scales of the body: 5 cm on a full layout."""
-UNKNOWN_FLOOR = 0.02
-"""The same where a label belongs to no segment, and nobody knows what it moves with."""
 DEVIATION_SHARE = 0.6
 """How much of a distance's variance over time its mean may be off by: another motion."""
 DEVIATION_SPREAD = 0.5
@@ -35,6 +33,10 @@ STEADY = 0.5
 counts in proportion."""
 FAINTEST = 0.05
 """Least that a quadruple must count to be looked at."""
+UNJOINTED_FLOOR = 0.02
+"""The same where nobody has told what moves with what: this stands for other postures."""
+UNJOINTED_HANDED = 0.3
+"""What a quadruple counts then."""
 PRIOR = 2
 """Recordings that these spreads count as, beside those that the template is learnt from."""
 QUADRUPLES = 2000
@@ -107,21 +109,11 @@ def template_of(model: TopologicalModel, labels: Sequence[str] | None = None) ->
     BadModel
         If the model has no statistics, or of fewer than four labels.
     """
-    if not model.statistics:
-        raise BadModel(
-            f"model {model.name} has no statistics to recognise markers by; learn them from a "
-            "labelled recording: 'kinesphere model LABELLED -o MODEL.json'"
-        )
     known = _known_labels(model, labels)
-    if len(known) < LEAST_LABELS:
-        raise BadModel(
-            f"model {model.name} has statistics of {len(known)} markers; {LEAST_LABELS} at least "
-            "are needed to recognise a layout"
-        )
     pool = pooled(model.statistics, known)
-    postures = postures_of(model, known, pool.mean)
-    bent, owned = _posture_spread(model, known, postures)
-    floor = np.where(owned, DISTANCE_FLOOR, UNKNOWN_FLOOR)
+    quadruples, handed = _quadruples(model.statistics, known, pool.mean)
+    bent, told = _told_by_joints(model, known, pool.mean, quadruples)
+    floor = DISTANCE_FLOOR if model.joints else UNJOINTED_FLOOR
     prior = (
         (DISTANCE_SHARE * pool.mean) ** 2 + floor**2 + bent**2 + DEVIATION_SHARE * pool.mean_square
     )
@@ -129,8 +121,6 @@ def template_of(model: TopologicalModel, labels: Sequence[str] | None = None) ->
     likely = np.log(POSTURE_DEVIATION * bent + DEVIATION_FLOOR)
     log_std = np.where(bent > 0, (pool.n * pool.log_std + likely) / (pool.n + 1), pool.log_std)
     log_spread = np.where(bent > 0, POSTURE_DEVIATION_SPREAD, DEVIATION_SPREAD)
-    quadruples, handed = _quadruples(model.statistics, known, pool.mean)
-    told = np.clip((steadiness(postures, quadruples) - STEADY) / (1 - STEADY), 0.0, 1.0)
     kept = np.abs(handed * told) > FAINTEST
     return Template(
         labels=known,
@@ -143,6 +133,19 @@ def template_of(model: TopologicalModel, labels: Sequence[str] | None = None) ->
         size=pool.size,
         n_recordings=len(model.statistics),
     )
+
+
+def _told_by_joints(
+    model: TopologicalModel, labels: tuple[str, ...], mean: Array, quadruples: NDArray[np.int64]
+) -> tuple[Array, Array]:
+    """Return how much postures change each distance, and what each quadruple counts, 0…1."""
+    if not model.joints:
+        return np.zeros_like(mean), np.full(len(quadruples), UNJOINTED_HANDED)
+    postures = postures_of(model, labels, mean)
+    bent = spread_of_distances(postures)
+    bent[bent < STIFF] = 0.0
+    steady = (steadiness(postures, quadruples) - STEADY) / (1 - STEADY)
+    return bent, np.clip(steady, 0.0, 1.0)
 
 
 def usual_deviations(model: TopologicalModel) -> Array:
@@ -159,17 +162,6 @@ def usual_deviations(model: TopologicalModel) -> Array:
     return usual
 
 
-def _posture_spread(
-    model: TopologicalModel, labels: tuple[str, ...], postures: Array
-) -> tuple[Array, NDArray[np.bool_]]:
-    """Return how much postures change each distance, and whether the layout knows both labels."""
-    spread = spread_of_distances(postures)
-    spread[spread < STIFF] = 0.0
-    inside = np.isin(labels, [label for segment in model.segments for label in segment.markers])
-    owned = inside[:, None] & inside
-    return np.where(owned, spread, 0.0), owned
-
-
 def of_one_segment(model: TopologicalModel, labels: tuple[str, ...]) -> NDArray[np.bool_]:
     """Return which labels share a segment, as its own or shared ones, (n, n)."""
     together = np.eye(len(labels), dtype=bool)
@@ -180,6 +172,12 @@ def of_one_segment(model: TopologicalModel, labels: tuple[str, ...]) -> NDArray[
 
 
 def _known_labels(model: TopologicalModel, labels: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the labels with statistics, of those wanted; BadModel if they are too few."""
+    if not model.statistics:
+        raise BadModel(
+            f"model {model.name} has no statistics to recognise markers by; learn them from a "
+            "labelled recording: 'kinesphere model LABELLED -o MODEL.json'"
+        )
     wanted = model.labels if labels is None else tuple(labels)
     seen = {
         label
@@ -187,7 +185,13 @@ def _known_labels(model: TopologicalModel, labels: Sequence[str] | None) -> tupl
         for label, row in zip(statistics.labels, statistics.mean, strict=True)
         if np.isfinite(row).sum() > 1
     }
-    return tuple(label for label in wanted if label in seen)
+    known = tuple(label for label in wanted if label in seen)
+    if len(known) < LEAST_LABELS:
+        raise BadModel(
+            f"model {model.name} has statistics of {len(known)} markers; {LEAST_LABELS} at least "
+            "are needed to recognise a layout"
+        )
+    return known
 
 
 def _quadruples(
