@@ -22,7 +22,7 @@ every posture; .3 to .8 measure alike."""
 UNKNOWN = 3.0
 """Nats from which on a pair fits its labels worse than nothing does: right pairs have 1 on average,
 a point at a random place with a random spread 4 to 5."""
-INTO_FREE = 0.09
+INTO_FREE = 0.075
 """What a nat counts that keeps a point from a label nobody bears. An exchange of two points must
 fit both of them worse; one that slides into the place of a missing neighbour is held by its own
 distances alone, and those differ between people."""

@@ -19,8 +19,8 @@ DISTANCE_FLOOR = 0.008
 """And at least, in scales of the body: 5 cm on a full layout."""
 DEVIATION_SHARE = 0.6
 """How much of a distance's variance over time its mean may be off by: another motion."""
-DEVIATION_SPREAD = 0.5
-"""Spread between recordings of the logarithm of a deviation."""
+DEVIATION_SPREAD = 0.3
+"""Spread between recordings of the logarithm of a deviation within a segment."""
 POSTURE_DEVIATION = 0.5
 """Deviation over time of a distance that postures change, as a share of its spread between them:
 what counts as one recording more."""
@@ -33,10 +33,9 @@ STEADY = 0.5
 counts in proportion."""
 FAINTEST = 0.05
 """Least that a quadruple must count to be looked at."""
-UNJOINTED_FLOOR = 0.02
-"""The same where nobody has told what moves with what: this stands for other postures."""
-UNJOINTED_HANDED = 0.3
-"""What a quadruple counts then."""
+UNJOINTED = (0.02, 0.5, 0.3)
+"""Where nobody has told what moves with what: the floor of distances, which stands for other
+postures then, the spread of logarithms of deviations, and what a quadruple counts."""
 PRIOR = 2
 """Recordings that these spreads count as, beside those that the template is learnt from."""
 QUADRUPLES = 2000
@@ -113,21 +112,21 @@ def template_of(model: TopologicalModel, labels: Sequence[str] | None = None) ->
     pool = pooled(model.statistics, known)
     quadruples, handed = _quadruples(model.statistics, known, pool.mean)
     bent, told = _told_by_joints(model, known, pool.mean, quadruples)
-    floor = DISTANCE_FLOOR if model.joints else UNJOINTED_FLOOR
+    floor, log_spread = (DISTANCE_FLOOR, DEVIATION_SPREAD) if model.joints else UNJOINTED[:2]
     prior = (
         (DISTANCE_SHARE * pool.mean) ** 2 + floor**2 + bent**2 + DEVIATION_SHARE * pool.mean_square
     )
     weight = np.maximum(pool.n + PRIOR - 1, 1)
     likely = np.log(POSTURE_DEVIATION * bent + DEVIATION_FLOOR)
     log_std = np.where(bent > 0, (pool.n * pool.log_std + likely) / (pool.n + 1), pool.log_std)
-    log_spread = np.where(bent > 0, POSTURE_DEVIATION_SPREAD, DEVIATION_SPREAD)
+    log_spreads = np.where(bent > 0, POSTURE_DEVIATION_SPREAD, log_spread)
     kept = np.abs(handed * told) > FAINTEST
     return Template(
         labels=known,
         mean=pool.mean,
         variance=(PRIOR * prior + pool.squares) / weight,
         log_std=log_std,
-        log_variance=(PRIOR * log_spread**2 + pool.log_squares) / weight,
+        log_variance=(PRIOR * log_spreads**2 + pool.log_squares) / weight,
         quadruples=np.ascontiguousarray(quadruples[kept]),
         handedness=(handed * told)[kept],
         size=pool.size,
@@ -140,7 +139,7 @@ def _told_by_joints(
 ) -> tuple[Array, Array]:
     """Return how much postures change each distance, and what each quadruple counts, 0…1."""
     if not model.joints:
-        return np.zeros_like(mean), np.full(len(quadruples), UNJOINTED_HANDED)
+        return np.zeros_like(mean), np.full(len(quadruples), UNJOINTED[2])
     postures = postures_of(model, labels, mean)
     bent = spread_of_distances(postures)
     bent[bent < STIFF] = 0.0
