@@ -16,13 +16,13 @@ from kinesphere.geometry.signature import Signature
 from kinesphere.labelling import kernels
 from kinesphere.labelling.template import DEVIATION_FLOOR, DEVIATION_SHARE, Template
 
-HANDED = 0.15
-"""Nats between a quadruple that turns the right way and one whose side is even; .05 to .3 measure
-alike where all markers are there, .15 better than .05 where some are missing."""
+HANDED = 0.5
+"""Nats between a quadruple that turns the right way and one whose side is even, if it does so in
+every posture; .3 to .8 measure alike."""
 UNKNOWN = 3.0
 """Nats from which on a pair fits its labels worse than nothing does: right pairs have 1 on average,
 a point at a random place with a random spread 4 to 5."""
-INTO_FREE = 0.09
+INTO_FREE = 0.075
 """What a nat counts that keeps a point from a label nobody bears. An exchange of two points must
 fit both of them worse; one that slides into the place of a missing neighbour is held by its own
 distances alone, and those differ between people."""

@@ -29,7 +29,7 @@ STARTS = (24, 6)
 """Annealings from starts that are given, the best first, and from labels at random."""
 MENDED = 16
 """Most ends of one round that are mended, the best first."""
-AGREEING = 3
+AGREEING = 4
 """Ends that are mended into one place from which on no more are."""
 ROUNDS = 3
 """Most rounds of annealings, while ends do not agree: a second finds what the first found once."""

@@ -16,7 +16,7 @@ from scipy.optimize import linear_sum_assignment
 from scipy.sparse.csgraph import shortest_path
 
 from kinesphere.data import Array
-from kinesphere.labelling.problem import Labels
+from kinesphere.labelling.kernels.types import Indices as Labels
 
 MAJORISED = 30
 """Steps of the shape: it is a start, no more."""

@@ -9,18 +9,33 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array, MarkerStatistics, TopologicalModel
 from kinesphere.errors import BadModel
-from kinesphere.geometry.signature import scale_of
+from kinesphere.labelling.pooling import DEVIATION_FLOOR as DEVIATION_FLOOR
+from kinesphere.labelling.pooling import pooled
+from kinesphere.labelling.postures import postures_of, spread_of_distances, steadiness
 
 DISTANCE_SHARE = 0.12
-"""Spread between people of a mean distance, as a share of it."""
-DISTANCE_FLOOR = 0.02
-"""And at least, in scales of the body: 12 cm on a full layout."""
+"""Spread between people of a mean distance, as a share of it, beside that between postures."""
+DISTANCE_FLOOR = 0.008
+"""And at least, in scales of the body: 5 cm on a full layout."""
 DEVIATION_SHARE = 0.6
 """How much of a distance's variance over time its mean may be off by: another motion."""
-DEVIATION_SPREAD = 0.5
-"""Spread between recordings of the logarithm of a deviation."""
-DEVIATION_FLOOR = 0.01
-"""Added to a deviation before its logarithm is taken, in scales of the body."""
+DEVIATION_SPREAD = 0.3
+"""Spread between recordings of the logarithm of a deviation within a segment."""
+POSTURE_DEVIATION = 0.5
+"""Deviation over time of a distance that postures change, as a share of its spread between them:
+what counts as one recording more."""
+POSTURE_DEVIATION_SPREAD = 1.0
+"""Spread between recordings of the logarithm of such a deviation: what one rests another moves."""
+STIFF = 1e-6
+"""Spread between postures below which a distance is within a segment, in scales of the body."""
+STEADY = 0.5
+"""Steadiness of a quadruple in other postures from which on it tells left from right; what is more
+counts in proportion."""
+FAINTEST = 0.05
+"""Least that a quadruple must count to be looked at."""
+UNJOINTED = (0.02, 0.5, 0.3)
+"""Where nobody has told what moves with what: the floor of distances, which stands for other
+postures then, the spread of logarithms of deviations, and what a quadruple counts."""
 PRIOR = 2
 """Recordings that these spreads count as, beside those that the template is learnt from."""
 QUADRUPLES = 2000
@@ -80,7 +95,8 @@ def template_of(model: TopologicalModel, labels: Sequence[str] | None = None) ->
 
     Means and spreads are pooled over its recordings; what few recordings cannot tell about a
     spread, spreads between people in general do (``DISTANCE_SHARE`` and the others; set while
-    looking at 41-marker recordings of six people).
+    looking at 41-marker recordings of six people), and those between postures that the layout
+    might be in (``labelling.postures``).
 
     Parameters
     ----------
@@ -92,42 +108,43 @@ def template_of(model: TopologicalModel, labels: Sequence[str] | None = None) ->
     BadModel
         If the model has no statistics, or of fewer than four labels.
     """
-    if not model.statistics:
-        raise BadModel(
-            f"model {model.name} has no statistics to recognise markers by; learn them from a "
-            "labelled recording: 'kinesphere model LABELLED -o MODEL.json'"
-        )
     known = _known_labels(model, labels)
-    if len(known) < LEAST_LABELS:
-        raise BadModel(
-            f"model {model.name} has statistics of {len(known)} markers; {LEAST_LABELS} at least "
-            "are needed to recognise a layout"
-        )
-    parts = [_taken(statistics, known) for statistics in model.statistics]
-    scales = _scales([mean for mean, _ in parts])
-    mean = np.stack([m / scale for (m, _), scale in zip(parts, scales, strict=True)])
-    std = np.stack([s / scale for (_, s), scale in zip(parts, scales, strict=True)])
-    logs = np.log(std + DEVIATION_FLOOR)
-    n = np.isfinite(mean).sum(axis=0)
-    middle, log_middle = _mean(mean), _mean(logs)
-    prior = (DISTANCE_SHARE * middle) ** 2 + DISTANCE_FLOOR**2 + DEVIATION_SHARE * _mean(std**2)
-    weight = np.maximum(n + PRIOR - 1, 1)
-    variance = (PRIOR * prior + np.nansum((mean - middle) ** 2, axis=0)) / weight
-    log_variance = (
-        PRIOR * DEVIATION_SPREAD**2 + np.nansum((logs - log_middle) ** 2, axis=0)
-    ) / weight
-    quadruples, handed = _quadruples(model.statistics, known, middle)
+    pool = pooled(model.statistics, known)
+    quadruples, handed = _quadruples(model.statistics, known, pool.mean)
+    bent, told = _told_by_joints(model, known, pool.mean, quadruples)
+    floor, log_spread = (DISTANCE_FLOOR, DEVIATION_SPREAD) if model.joints else UNJOINTED[:2]
+    prior = (
+        (DISTANCE_SHARE * pool.mean) ** 2 + floor**2 + bent**2 + DEVIATION_SHARE * pool.mean_square
+    )
+    weight = np.maximum(pool.n + PRIOR - 1, 1)
+    likely = np.log(POSTURE_DEVIATION * bent + DEVIATION_FLOOR)
+    log_std = np.where(bent > 0, (pool.n * pool.log_std + likely) / (pool.n + 1), pool.log_std)
+    log_spreads = np.where(bent > 0, POSTURE_DEVIATION_SPREAD, log_spread)
+    kept = np.abs(handed * told) > FAINTEST
     return Template(
         labels=known,
-        mean=middle,
-        variance=variance,
-        log_std=log_middle,
-        log_variance=log_variance,
-        quadruples=quadruples,
-        handedness=handed,
-        size=float(np.mean(scales)),
-        n_recordings=len(parts),
+        mean=pool.mean,
+        variance=(PRIOR * prior + pool.squares) / weight,
+        log_std=log_std,
+        log_variance=(PRIOR * log_spreads**2 + pool.log_squares) / weight,
+        quadruples=np.ascontiguousarray(quadruples[kept]),
+        handedness=(handed * told)[kept],
+        size=pool.size,
+        n_recordings=len(model.statistics),
     )
+
+
+def _told_by_joints(
+    model: TopologicalModel, labels: tuple[str, ...], mean: Array, quadruples: NDArray[np.int64]
+) -> tuple[Array, Array]:
+    """Return how much postures change each distance, and what each quadruple counts, 0…1."""
+    if not model.joints:
+        return np.zeros_like(mean), np.full(len(quadruples), UNJOINTED[2])
+    postures = postures_of(model, labels, mean)
+    bent = spread_of_distances(postures)
+    bent[bent < STIFF] = 0.0
+    steady = (steadiness(postures, quadruples) - STEADY) / (1 - STEADY)
+    return bent, np.clip(steady, 0.0, 1.0)
 
 
 def usual_deviations(model: TopologicalModel) -> Array:
@@ -135,11 +152,12 @@ def usual_deviations(model: TopologicalModel) -> Array:
 
     NaN where the statistics know nothing.
     """
-    template = template_of(model)
-    at = [model.labels.index(label) for label in template.labels]
+    known = _known_labels(model, None)
+    pool = pooled(model.statistics, known)
+    at = [model.labels.index(label) for label in known]
     usual = np.full((len(model.labels), len(model.labels)), np.nan)
-    std = np.maximum(np.exp(template.log_std) - DEVIATION_FLOOR, 0.0)
-    usual[np.ix_(at, at)] = template.size * np.where(np.isnan(template.mean), np.nan, std)
+    std = np.maximum(np.exp(pool.log_std) - DEVIATION_FLOOR, 0.0)
+    usual[np.ix_(at, at)] = pool.size * np.where(np.isnan(pool.mean), np.nan, std)
     return usual
 
 
@@ -153,6 +171,12 @@ def of_one_segment(model: TopologicalModel, labels: tuple[str, ...]) -> NDArray[
 
 
 def _known_labels(model: TopologicalModel, labels: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the labels with statistics, of those wanted; BadModel if they are too few."""
+    if not model.statistics:
+        raise BadModel(
+            f"model {model.name} has no statistics to recognise markers by; learn them from a "
+            "labelled recording: 'kinesphere model LABELLED -o MODEL.json'"
+        )
     wanted = model.labels if labels is None else tuple(labels)
     seen = {
         label
@@ -160,42 +184,13 @@ def _known_labels(model: TopologicalModel, labels: Sequence[str] | None) -> tupl
         for label, row in zip(statistics.labels, statistics.mean, strict=True)
         if np.isfinite(row).sum() > 1
     }
-    return tuple(label for label in wanted if label in seen)
-
-
-def _taken(statistics: MarkerStatistics, labels: tuple[str, ...]) -> tuple[Array, Array]:
-    """Return mean and deviation of these labels, NaN where the recording has none."""
-    at = {label: i for i, label in enumerate(statistics.labels)}
-    here = [i for i, label in enumerate(labels) if label in at]
-    there = [at[labels[i]] for i in here]
-    found = np.full((2, len(labels), len(labels)), np.nan)
-    found[0][np.ix_(here, here)] = statistics.mean[np.ix_(there, there)]
-    found[1][np.ix_(here, here)] = statistics.deviation[np.ix_(there, there)]
-    return found[0], found[1]
-
-
-def _scales(means: Sequence[Array]) -> list[float]:
-    """Return each recording's scale; one that lacks markers is measured by those it shares."""
-    whole = [bool(np.isfinite(mean).all()) for mean in means]
-    full = max(range(len(means)), key=lambda k: (np.isfinite(means[k]).sum(), -k))
-    base = scale_of(means[full])
-    scales = []
-    for k, mean in enumerate(means):
-        if whole[k] or k == full:
-            scales.append(scale_of(mean))
-            continue
-        both = np.isfinite(mean) & np.isfinite(means[full]) & (means[full] > 0)
-        ratio = float(np.median(mean[both] / means[full][both])) if both.any() else 1.0
-        scales.append(base * ratio)
-    return scales
-
-
-def _mean(values: Array) -> Array:
-    """Return the mean over recordings, NaN where none knows anything."""
-    known = np.isfinite(values)
-    n = known.sum(axis=0)
-    total = np.where(known, values, 0.0).sum(axis=0)
-    return np.where(n > 0, total / np.maximum(n, 1), np.nan)
+    known = tuple(label for label in wanted if label in seen)
+    if len(known) < LEAST_LABELS:
+        raise BadModel(
+            f"model {model.name} has statistics of {len(known)} markers; {LEAST_LABELS} at least "
+            "are needed to recognise a layout"
+        )
+    return known
 
 
 def _quadruples(
