@@ -12,8 +12,9 @@ BETWEEN = "between the markers of both limbs"
 """Source of a centre that no landmark is known of."""
 STEADY = "markers that are steady in both limbs"
 """Source of a landmark that the motion itself gave."""
-NO_LANDMARK_SHARE = 0.25
-"""Without a landmark the centre is expected midway between the limbs, to this share of the way."""
+NO_LANDMARK_SHARE = 0.5
+"""Without a landmark the centre is expected midway between the limbs, to this share of the way: as
+far as the markers themselves, for a foot's lie all but at the ankle."""
 
 
 def expected_centre(
