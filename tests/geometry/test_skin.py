@@ -7,9 +7,9 @@ from numpy.testing import assert_allclose
 from kinesphere.geometry.centres import Turning, View, fit_centre
 from kinesphere.geometry.joint_turns import joint_modes, main_axis, nearest_poses
 from kinesphere.geometry.pose_errors import pose_covariance
+from kinesphere.geometry.pose_worth import noise_share, pose_worth
 from kinesphere.geometry.rigid import fit_rigid, fit_shape, into_frame
 from kinesphere.geometry.rotations import rotation_exp
-from kinesphere.geometry.pose_worth import noise_share, pose_worth
 from kinesphere.geometry.skin import fit_through_skin, skin_noise
 
 FRAMES = 160
