@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-
 from benchmarks.accuracy.bodies.centres import _plain, _rows, centres_section
+
 from kinesphere.geometry.rotations import rotation_exp
 
 
