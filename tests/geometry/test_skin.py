@@ -7,9 +7,10 @@ from numpy.testing import assert_allclose
 from kinesphere.geometry.centres import Turning, View, fit_centre
 from kinesphere.geometry.joint_turns import joint_modes, main_axis, nearest_poses
 from kinesphere.geometry.pose_errors import pose_covariance
+from kinesphere.geometry.pose_worth import noise_share, pose_worth
 from kinesphere.geometry.rigid import fit_rigid, fit_shape, into_frame
 from kinesphere.geometry.rotations import rotation_exp
-from kinesphere.geometry.skin import _worth, fit_through_skin, skin_noise
+from kinesphere.geometry.skin import fit_through_skin, skin_noise
 
 FRAMES = 160
 PARENT = np.array([[75, -17, -144], [71, -40, 112], [-93, 22, -56], [-92, 16, 35], [-82, 53, -13]])
@@ -203,7 +204,7 @@ def test_skin_noise_is_what_follows_the_joint_and_no_more(rng):
 def worth_of(strays, crowd, hidden=3.0, looks=20.0):
     t = np.linspace(0, 40, len(strays))
     near = nearest_poses(rotation_exp(np.stack([np.sin(t), np.cos(1.3 * t), 0 * t], axis=1)))
-    return _worth(strays, near, crowd, looks, hidden)
+    return pose_worth(noise_share(strays, near), crowd, looks, hidden)
 
 
 def test_noise_counts_by_frames_and_what_lasts_by_poses(rng):

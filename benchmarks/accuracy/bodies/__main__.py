@@ -11,6 +11,7 @@ from typing import Any
 
 from benchmarks.accuracy.bodies.arm import arm_figures
 from benchmarks.accuracy.bodies.cases import ROOT, actor_case, creature_cases, folder, real_cases
+from benchmarks.accuracy.bodies.centres import centre_rows
 from benchmarks.accuracy.bodies.changes import change_rows
 from benchmarks.accuracy.bodies.cost import Cost, cost_rows, plot
 from benchmarks.accuracy.bodies.functional import functional_rows
@@ -48,6 +49,7 @@ SECTIONS: dict[str, Callable[[], Any]] = {
     "partitions": _partitions,
     "changes": _changes,
     "perturbed": lambda: [asdict(row) for row in perturbed_rows()],
+    "centres": lambda: [asdict(row) for row in centre_rows()],
     "arm": arm_figures,
     "functional": lambda: [asdict(row) for row in functional_rows()],
     "hiding": lambda: [asdict(row) for row in hiding_rows()],

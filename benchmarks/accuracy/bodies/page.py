@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.accuracy.bodies.centres import centres_section
 from benchmarks.accuracy.bodies.changes import changes_section
 from benchmarks.accuracy.bodies.perturbed import perturbed_section
 
@@ -123,6 +124,7 @@ def page(found: dict[str, Any]) -> str:
             _partitions(found["partitions"]),
             changes_section(found["changes"]),
             perturbed_section(found["perturbed"]),
+            centres_section(found["centres"]),
             _functional(found["functional"], found["peer"]),
             _arm(found["arm"]),
             _hiding(found["hiding"]),

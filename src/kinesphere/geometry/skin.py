@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.geometry.centre_terms import soft_weights
-from kinesphere.geometry.centre_views import Turning, View
+from kinesphere.geometry.centre_views import View
 from kinesphere.geometry.joint_turns import (
     crowds,
     has_one_axis,
@@ -20,9 +20,9 @@ from kinesphere.geometry.joint_turns import (
     joint_turns,
     nearest_poses,
 )
-from kinesphere.geometry.pose_errors import point_covariance
-from kinesphere.geometry.rotations import hat
+from kinesphere.geometry.pose_worth import crowding, noise_share, pose_worth
 from kinesphere.geometry.shake import clear_of_shake, doubt_of, find_shake
+from kinesphere.geometry.skin_equations import Skin, equations, root_of
 from kinesphere.geometry.vectors import is_seen, lengths
 
 Array = NDArray[np.float64]
@@ -36,8 +36,6 @@ RIGID = 1.5
 synthetic skin the errors of hips are least from 1 to 1.5."""
 FEW = 10
 """Poses below which nothing is said about skin."""
-LUCK = 3.0
-"""Standard errors of the share of residuals that lasts by which it may be larger than it looks."""
 ROUNDING = 1e-13
 """Share of each unknown's own weight that keeps equations solvable: what rounding leaves."""
 SETTLED = 1e-6
@@ -90,17 +88,6 @@ class SkinFit(NamedTuple):
     """(3, 3) 1/m², what the motion tells about it."""
 
 
-class _Skin(NamedTuple):
-    """What goes with the joint."""
-
-    modes: Array
-    """(n, k): three, or none where the joint is a hinge."""
-    seeing: Array
-    """(6, 6) square root of the covariance of what it does to the seeing limb's pose."""
-    turning: Array
-    """(6, 6) the same of the turning limb's."""
-
-
 def fit_through_skin(
     view: View,
     start: Array,
@@ -119,13 +106,15 @@ def fit_through_skin(
     have a soft-L1 loss. The information reckons with ``hidden`` instead of `RIGID`.
 
     Errors that are not linear in the rotation stay. What of the residuals is alike in poses alike
-    no number of frames averages out: of that, a look is worth 1/``hidden``².
+    no number of frames averages out: of that, a look is worth 1/``hidden``². A joint that turns
+    little tells skin and centre apart badly: see `kinesphere.geometry.pose_worth.crowding`.
 
     A hinge tells nothing apart that is linear in its one angle: there skin is not modelled, and as
     far as errors last, poses count alike however long they were held, so that skin errs alike in
     trials that dwell elsewhere.
 
-    What noise in the orientations feigns is taken off: see `kinesphere.geometry.shake`.
+    What noise in the orientations feigns is taken off, as far as the residuals are noise: see
+    `kinesphere.geometry.shake`.
 
     Parameters
     ----------
@@ -150,18 +139,19 @@ def fit_through_skin(
     assert turning.skin_seeing is not None
     rotations = turning.rotations[turning.known]
     modes, near = joint_modes(rotations), nearest_poses(turning.back)
-    crowd = np.ones(len(modes))
-    if has_one_axis(joint_turns(rotations), feigned(view, hidden)):
-        modes, crowd = modes[:, :0], crowds(turning.back)
-    skin = _Skin(modes, RIGID * _root(turning.skin_seeing), RIGID * _root(turning.skin))
+    hinge = has_one_axis(joint_turns(rotations), feigned(view, hidden))
+    modes = modes[:, :0] if hinge else modes
+    crowd = crowds(rotations) if hinge else crowding(rotations)
+    skin = Skin(modes, RIGID * root_of(turning.skin_seeing), RIGID * root_of(turning.skin))
     x, inner = start, turning.place(start).mean(axis=0)
     z, length = np.zeros(12 * modes.shape[1]), np.inf
     ones = np.concatenate([np.zeros(3), np.ones(len(z))])
     for _ in range(rounds):
-        residual, columns, whitening = _equations(view, turning, x, inner, skin)
+        residual, columns, whitening = equations(view, turning, x, inner, skin)
         strays = residual + columns[:, :, 6:] @ z
         scale, soft = soft_weights(lengths(strays)[:, None], None, 3)
-        w = soft[:, 0] / scale[0] ** 2 * _worth(strays, near, crowd, looks, hidden)
+        share = noise_share(strays, near)
+        w = soft[:, 0] / scale[0] ** 2 * pose_worth(share, crowd, looks, hidden)
         flat = columns.reshape(-1, columns.shape[2])
         weighed = (columns * w[:, None, None]).reshape(flat.shape)
         told, gradient = weighed.T @ flat, weighed.T @ residual.ravel()
@@ -169,6 +159,9 @@ def fit_through_skin(
         others[:3, :3] += 1e-9 * np.trace(told[3:6, 3:6]) * np.eye(3)
         # poses say how large their noise is, unless what is left is less
         size = min(1.0, float(np.average((strays**2).sum(axis=1), weights=w)) / 3)
+        # what lasts and is fitted along does not shake: the share that does is known to lie between
+        # `share` and one, for poses alike shake alike
+        size *= 1.0 if hinge else np.sqrt(share)
         shake, drawn = find_shake(view, turning, x, whitening, w * size)
         doubt = doubt_of(shake, drawn + shake @ (expected - x), prior)
         follow = _solve(others, told[3:, :3])
@@ -188,33 +181,6 @@ def fit_through_skin(
     return SkinFit(x, heard @ curve)
 
 
-def _worth(
-    strays: Array, near: NDArray[np.int64], crowd: Array, looks: float, hidden: float
-) -> Array:
-    """Return what each pose is worth, in looks at the centre, (n,).
-
-    Of the residuals' variance the share that differs between poses most alike is noise, which
-    averages out; the rest lasts: it is alike in poses alike, as is ``hidden``² times as much that
-    no residual shows. Frames of one pose share what lasts.
-
-    Parameters
-    ----------
-    strays : (n, 3)
-        Residuals.
-    near, crowd : (n,)
-        As `nearest_poses` and `crowds` return them.
-    looks
-        How many independent poses there are.
-    """
-    n = len(strays)
-    apart = np.median(((strays - strays[near]) ** 2).sum(axis=1)) / 2
-    noise = min(float(apart / max(np.median((strays**2).sum(axis=1)), 1e-300)), 1.0)
-    lasting = hidden**2 * (1 - noise + LUCK / np.sqrt(n))
-    shares = 1 / (noise + lasting * crowd)
-    worth: Array = shares / shares.sum() / (noise / n + lasting / looks)
-    return worth
-
-
 def _solve(matrix: Array, right: Array) -> Array:
     """Solve symmetric equations whose unknowns may differ in size by 10⁸ and more."""
     sizes = 1 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
@@ -222,37 +188,3 @@ def _solve(matrix: Array, right: Array) -> Array:
     rows = sizes if right.ndim == 1 else sizes[:, None]
     solved: Array = rows * np.linalg.solve(scaled, rows * right)
     return solved
-
-
-def _root(covariance: Array) -> Array:
-    values, vectors = np.linalg.eigh(covariance)
-    root: Array = vectors * np.sqrt(np.maximum(values, 0.0))
-    return root
-
-
-def _equations(
-    view: View, turning: Turning, x: Array, inner: Array, skin: _Skin
-) -> tuple[Array, Array, Array]:
-    """Return residuals (n, 3) over their noise, and their derivatives (n, 3, 6 + 12 k).
-
-    By the centre in either limb, and by the maps from the joint's rotation to their poses' errors.
-    """
-    n, k = skin.modes.shape
-    products = turning.means[1]
-    carried = (products @ point_covariance(view.pose, x).ravel()).reshape(3, 3)
-    noise = point_covariance(turning.pose, inner) + carried + turning.noise**2 * np.eye(3)
-    values, vectors = np.linalg.eigh(noise)
-    w = (vectors / np.sqrt(np.maximum(values, turning.noise**2))) @ vectors.T
-    back = w @ turning.back
-    columns = np.empty((n, 3, 6 + 12 * k))
-    columns[:, :, :3] = back
-    columns[:, :, 3:6] = -w
-    if k:
-        seeing = np.concatenate([-hat(x), np.eye(3)], axis=1) @ skin.seeing
-        own = np.concatenate([-hat(inner), np.eye(3)], axis=1) @ skin.turning
-        middle = 6 + 6 * k
-        moved = (back @ seeing)[:, :, None] * skin.modes[:, None, :, None]
-        columns[:, :, 6:middle] = moved.reshape(n, 3, -1)
-        moved = -(w @ own)[None, :, None] * skin.modes[:, None, :, None]
-        columns[:, :, middle:] = moved.reshape(n, 3, -1)
-    return (turning.place(x) - inner) @ w.T, columns, w

@@ -11,7 +11,7 @@ STEP = "discovery"
 """Name of the step whose findings are drawn."""
 GOLDEN_ANGLE = 137.508
 """deg between one hue and the next: any number of colours, none near to those just before."""
-DOUBTFUL = 0.15
+DOUBTFUL = 0.3
 """Confidence below which a joint is drawn as doubtful, as discovery warns of it."""
 UNSURE = 0.5
 """Confidence below which a marker or body counts as unsure."""

@@ -12,8 +12,12 @@ BETWEEN = "between the markers of both limbs"
 """Source of a centre that no landmark is known of."""
 STEADY = "markers that are steady in both limbs"
 """Source of a landmark that the motion itself gave."""
-NO_LANDMARK_SHARE = 0.25
-"""Without a landmark the centre is expected midway between the limbs, to this share of the way."""
+NO_LANDMARK_SHARE = 0.5
+"""Without a landmark the centre is expected midway between the limbs, to this share of the way: as
+far as the markers themselves, for a foot's lie all but at the ankle."""
+NO_LANDMARK_HINGE = 0.25
+"""The same of a joint with one axis: knees and elbows lie about midway, and along the axis there is
+little else that tells."""
 
 
 def expected_centre(
@@ -42,7 +46,8 @@ def expected_centre(
     own = np.nan_to_num(mean_seen(parent.shape))
     if not np.isfinite(child).all():
         child = own
-    spread = max(NO_LANDMARK_SHARE * float(np.linalg.norm(child - own)), 0.02)
+    share = NO_LANDMARK_HINGE if joint.n_axes == 1 else NO_LANDMARK_SHARE
+    spread = max(share * float(np.linalg.norm(child - own)), 0.02)
     return (child + own) / 2, spread, BETWEEN
 
 

@@ -216,3 +216,10 @@ def test_two_that_go_the_same_way_are_not_one(rng, moving_bodies):
         points[:, of == k] += (3.0 * times * [1, 0, 0] + sway + 0.5 * k)[:, None]
     forest = find_forest(JointCosts(points), [np.arange(4), np.arange(4, 8)])
     assert len(forest.trees) == 2
+
+
+def test_joints_are_doubted_by_their_rivals_or_by_what_they_cost():
+    assert Edge(0, 1, 0.009, 0.010).doubtful
+    assert not Edge(0, 1, 0.006, 0.010).doubtful
+    assert Edge(0, 1, 0.009, np.inf).doubtful  # no rival speaks for it if it hardly fits itself
+    assert not Edge(0, 1, 0.002, np.inf).doubtful

@@ -8,7 +8,7 @@ import pytest
 from kinesphere.skeleton import discover
 from kinesphere.skeleton.discovery.figure import Figure
 from kinesphere.skeleton.discovery.forest import Edge, Forest
-from kinesphere.skeleton.discovery.names import Names, shaken
+from kinesphere.skeleton.discovery.names import Names, _torso, shaken
 from kinesphere.skeleton.discovery.person import LIKELY, SHARPNESS, STATURE, Person
 from kinesphere.synthetic import HAND, make_performance, spoil_with_noise
 
@@ -41,7 +41,7 @@ def test_half_is_left_where_another_tree_or_number_would_do_as_well(edges, count
     doubted = shaken(names(0.95), forest(*edges), count)
     assert doubted.confidence == pytest.approx(0.475)
     assert doubted.limbs == LIMBS
-    assert "as likely wrong as right (confidence 0.47)" in doubted.doubt
+    assert "unsure and may be wrong (confidence 0.47)" in doubted.doubt
 
 
 def test_names_too_unsure_are_told_but_not_given():
@@ -143,3 +143,10 @@ def test_a_body_left_over_costs_what_one_person_in_twenty_has(read_as):
     """−2 log of its share, as every squared deviation is: a person with five such is nobody."""
     assert read_as(0) == pytest.approx(2 * np.log(20), rel=0.01)
     assert read_as(0, 0) == pytest.approx(4 * np.log(20), rel=0.01)
+
+
+def test_what_legs_hang_from_is_the_pelvis_where_nothing_is_above_it():
+    legs = ((1, 2, 3), (4, 5, 6))
+    assert _torso(Person(0, None, legs, (), None)) == {0: "pelvis"}
+    assert _torso(Person(0, None, legs, ((0, (7, 8)),), None)) == {0: "trunk"}
+    assert _torso(Person(0, None, legs, (), 7)) == {0: "trunk", 7: "head"}

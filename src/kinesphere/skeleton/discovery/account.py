@@ -6,7 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array, Json, TopologicalModel
 from kinesphere.skeleton.discovery.clustering import merge_curve
-from kinesphere.skeleton.discovery.forest import DOUBTFUL, Edge
+from kinesphere.skeleton.discovery.forest import Edge
 from kinesphere.skeleton.discovery.names import DOUBTFUL_COUNT, Names
 from kinesphere.skeleton.discovery.partition import Partition
 from kinesphere.skeleton.discovery.steadiness import owners
@@ -126,12 +126,15 @@ def doubts_about(
             f"(confidence {sure:.2f}); set discovery.bodies where it is known"
         )
     shaky = [
-        f"{joint.name} ({edge.confidence:.2f})"
+        f"{joint.name} ({_rivalled(edge)})"
         for joint in model.joints
-        if (edge := _edge(partition, joint.parent, joint.child, limb_of)).confidence < DOUBTFUL
+        if (edge := _edge(partition, joint.parent, joint.child, limb_of)).doubtful
     ]
     if shaky:
-        doubts.append(f"another tree of bodies is about as likely at {', '.join(shaky)}")
+        doubts.append(
+            f"another tree of bodies is nearly as likely, and joints may be wrong, at "
+            f"{', '.join(shaky)}"
+        )
     if faint:
         doubts.append(
             f"hardly anything shows a joint at {', '.join(faint)}: a limb there stays about where "
@@ -169,6 +172,13 @@ def _solved(partition: Partition, limb_of: dict[int, str]) -> int:
 def _edge(partition: Partition, parent: str, child: str, limb_of: dict[int, str]) -> Edge:
     ends = {body for body, limb in limb_of.items() if limb in (parent, child)}
     return next(edge for edge in partition.forest.edges if {edge.a, edge.b} == ends)
+
+
+def _rivalled(edge: Edge) -> str:
+    """Return a joint's confidence for a person; of one that has no rival, why it is doubted."""
+    if np.isfinite(edge.next_best):
+        return f"{edge.confidence:.2f}"
+    return "no other is left, and this one hardly fits"
 
 
 def _rms(values: Array) -> float:

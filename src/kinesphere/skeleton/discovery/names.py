@@ -13,14 +13,19 @@ from kinesphere.skeleton.discovery.sides import Sides, find_sides
 
 SURE = 0.75
 """Least confidence of a reading for names to be given."""
-EVEN = 0.5
-"""Confidence below which names are as likely wrong as right, which is said."""
+EVEN = 0.6
+"""Confidence below which names are told to be unsure: of thirds and halves of recordings one of two
+between .5 and this has a wrong one."""
 GIVEN = 0.45
 """Least confidence for names to be given: below, 4 of 9 parts of recordings had wrong ones, above
 1 of 19; all whole recordings at hand are above."""
 DOUBTFUL_COUNT = 0.3
 """Confidence below which another number of bodies would do about as well: it is above .7 on
 synthetic bodies and rigid plates, .27 to .73 on sparse markers of a person."""
+NOBODY = (
+    "no person is seen in the tree of bodies; limbs are numbered. If it was a person, bodies or "
+    "joints are wrong, or limbs have no markers"
+)
 LEG = ("thigh", "shank", "foot")
 ARM = ("upper_arm", "forearm", "hand")
 
@@ -55,7 +60,7 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     elbows. Without sides pelvis, trunk and head keep their names and the rest is numbered.
     """
     found = find_person(figure, tree)
-    nobody = no_names(tree, "no person is seen in the tree of bodies; limbs are numbered")
+    nobody = no_names(tree, NOBODY)
     if found is None:
         return nobody
     person, confidence = found
@@ -135,10 +140,7 @@ def shaken(names: Names, forest: Forest, count_confidence: float) -> Names:
         of_names = next(bodies for bodies in forest.trees if bodies[0] in names.limbs)
         return _withheld(replace(names, confidence=sure, account=account), of_names)
     if sure < EVEN:
-        told = (
-            f"the names of limbs are about as likely wrong as right (confidence {sure:.2f}): check "
-            "them"
-        )
+        told = f"names of limbs are unsure and may be wrong (confidence {sure:.2f}): check them"
         doubt = f"{doubt}; {told}" if doubt else told
     return replace(names, confidence=sure, account=account, doubt=doubt)
 
@@ -170,7 +172,9 @@ def no_names(tree: Sequence[int], doubt: str = "") -> Names:
 
 def _torso(person: Person) -> dict[int, str]:
     if person.pelvis is None:
-        given = {person.trunk: "trunk"}
+        # with nothing above it, what legs hang from is the pelvis of half a body
+        alone = not person.arms and person.head is None
+        given = {person.trunk: "pelvis" if alone else "trunk"}
     else:
         given = {person.trunk: "trunk", person.pelvis: "pelvis"}
     if person.head is not None:
