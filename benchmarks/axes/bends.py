@@ -89,8 +89,9 @@ def scatter(found: Sequence[tuple[int, bool, Array]], middle: float) -> dict[str
     """Return scatter, hysteresis and trend of the axes of bends, deg.
 
     ``expected_deg`` is the rms angle between the mean axes of both halves that independent bends
-    of this scatter lead to, ``means_deg`` is what means of both halves do differ by, name by name of
-    `benchmarks.axes.means`; ``without_first`` holds the same without the first bend and its return.
+    of this scatter lead to, ``means_deg`` what means of both halves do differ by, under the names
+    of `benchmarks.axes.means`; ``without_first`` holds the same without the first bend and its
+    return.
     """
     if len(found) < FEWEST:
         return None
@@ -129,17 +130,17 @@ _BEFORE = """
 What 1.5° between halves asks of a knee: the axis of every single bend and return, from {low:.0f} to
 {high:.0f}°, scatters about the mean of them. Halves of so many independent bends then differ by the
 *expected* angle (rms). Beside it what halves do differ by: the axis as delivered, and means over
-these very bends, two of which resist outliers (section 2c). *Without the first*: the first half begins
-after the first bend and its return, in which the person lifts the thigh into place.
+these very bends, two of which resist outliers (section 2c). *Without the first*: the first half
+begins after the first bend and its return, in which the person lifts the thigh into place.
 
 | knee | bends and returns | scatter, ° | expected, ° | as delivered, ° | {means} |
 |---|---:|---:|---:|---:|{rules}|"""
 _AFTER = """
 Bends are not told from returns ({hysteresis} apart), so there is no hysteresis to reckon with.
-The first bend is not what an axis misses 1.5° by. Without it and its return the axis of the right knee, as delivered,
-is {without} instead of {with_first} off, and means that resist it stay at {resisting}: the bends that follow have not the
-axis of the last ones either. (The plain mean of them does fall, to {plain}; its bends are 20 to 90°
-of the whole arc.) Two halves of one axis that bends scatter about so much differ by {expected} by chance alone.
+Halves of one axis about which bends scatter like this differ by {expected} by chance alone. It is
+not the first bend by which the right knee misses 1.5°: without it and its return the axis as
+delivered is {without} off instead of {whole}, and means that resist it stay at {resisting}. What is
+left of these bends by hindsight, 20 to 90° of each, does have a mean that is {plain} off.
 """
 
 
@@ -165,7 +166,7 @@ def page(rows: Mapping[str, Mapping[str, Any] | None]) -> str:
         told = {
             "hysteresis": " and ".join(f"{row['hysteresis_deg']:.1f}°" for row in known.values()),
             "without": f"{rest['delivered_deg']:.2f}°",
-            "with_first": f"{right['delivered_deg']:.2f}°",
+            "whole": f"{right['delivered_deg']:.2f}°",
             "resisting": f"{resisting:.2f}° and {median:.2f}°",
             "plain": f"{rest['means_deg'][next(iter(MEANS))]:.2f}°",
             "expected": " and ".join(f"{row['expected_deg']:.1f}°" for row in known.values()),

@@ -22,7 +22,7 @@ from benchmarks.axes.generator import (
     spoil,
     wander,
 )
-from benchmarks.axes.means import MEANS
+from benchmarks.axes.means import FREEDOM, MEANS
 from benchmarks.axes.measures import line_angles, matched
 from kinesphere.geometry.rotations import rotation_exp
 from kinesphere.parameterization.samples import smooth_rotations
@@ -131,24 +131,26 @@ def coverage(errors: Array, said: Array) -> dict[str, float]:
 _BEFORE = """\
 ### 2c Hinges, an outlying bend, and what is said of the error
 
-Hinges that bend five times by {reach:.0f}°, {seeds} for each row; *lifted* ones have the parent turn
-by up to {lifted:.0f}° about anything during the first bend and return, as a thigh does that is being
-lifted. Median (rms) error in degrees of the axis as delivered and of means over the axes of single
-bends and returns (section 6; the true angle says where they begin): the plain mean, one that takes
-bends from a t distribution of {freedom:.0f} degrees of freedom, and the spatial median.
+Hinges that bend five times by {reach:.0f}°, {seeds} for each row; *lifted* ones have the parent
+turn by up to {lifted:.0f}° about anything during the first bend and return, as the skin of a thigh
+does that is being lifted. Median (rms) error in degrees of the axis as delivered and of means over
+the axes of single bends and returns (section 6; the true angle says where they begin): the plain
+mean, one that takes them from a t distribution of {freedom:.0f} degrees of freedom, and the spatial
+median.
 """
 _BETWEEN = """
+Means that resist do what they are for. The axis as delivered, whose frames are taken from heavy
+tails already, needs none of them: but for *tissue* it is nearer to the truth in every row.
+
 What is *said* of the axes as delivered (`axes_uncertainty_deg`, rms), beside their error (rms), and
-the percent of errors within one and two times what is said.
+the percent of errors within what is said and within twice that:
 
 | joint | noise | error, ° | said, ° | within it, % | within twice, % |
 |---|---|---:|---:|---:|---:|"""
 _AFTER = """
-Means over bends resist the lifted one, and the axis as delivered, whose frames are taken from heavy
-tails already, does so as well or better under all noise but none; nowhere else do they help. What is said
-is too much rather than too little, but for *tissue*: a tenth of the movement that comes back about
-another axis in every bend alike. No repetition shows it, and the 2° of skin over a movement that
-the uncertainty reckons with are less than the 12° that this is in 120°.
+What is said is too much rather than too little, but for *tissue*, where a tenth of the movement
+comes back about another axis in every bend alike: no repetition shows that, and the 2° of skin over
+a movement that the uncertainty reckons with are less than the 12° that this is in 120°.
 """
 
 
@@ -156,8 +158,6 @@ def page(table: Mapping[str, Any]) -> str:
     """Return the section."""
     if not table:
         return ""
-    from benchmarks.axes.means import FREEDOM
-
     methods = (DELIVERED, *MEANS)
     lines = [_BEFORE.format(reach=REACH, seeds=SEEDS, lifted=LIFTED, freedom=FREEDOM)]
     lines.append("| joint | noise | " + " | ".join(methods) + " |")
