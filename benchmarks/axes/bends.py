@@ -137,10 +137,11 @@ begins after the first bend and its return, in which the person lifts the thigh 
 |---|---:|---:|---:|---:|{rules}|"""
 _AFTER = """
 Bends are not told from returns ({hysteresis} apart), so there is no hysteresis to reckon with.
-Halves of one axis about which bends scatter like this differ by {expected} by chance alone. It is
-not the first bend by which the right knee misses 1.5°: without it and its return the axis as
-delivered is {without} off instead of {whole}, and means that resist it stay at {resisting}. What is
-left of these bends by hindsight, 20 to 90° of each, does have a mean that is {plain} off.
+Halves of one axis about which bends scatter like this differ by {expected} (rms) by chance alone.
+It is not the first bend by which the right knee misses 1.5°. Without it and its return halves of
+the axis as delivered differ by {without} instead of {whole}; means that resist outliers do not
+see it as one ({resisting}). Only means over what is left of these bends by hindsight differ by less
+({plain}).
 """
 
 
@@ -163,12 +164,13 @@ def page(rows: Mapping[str, Mapping[str, Any] | None]) -> str:
     if right is not None:
         _, resisting, median = (right["means_deg"][name] for name in MEANS)
         rest = right["without_first"]
+        left = rest["means_deg"]
         told = {
             "hysteresis": " and ".join(f"{row['hysteresis_deg']:.1f}°" for row in known.values()),
             "without": f"{rest['delivered_deg']:.2f}°",
             "whole": f"{right['delivered_deg']:.2f}°",
             "resisting": f"{resisting:.2f}° and {median:.2f}°",
-            "plain": f"{rest['means_deg'][next(iter(MEANS))]:.2f}°",
+            "plain": " to ".join(f"{f(left.values()):.2f}°" for f in (min, max)),
             "expected": " and ".join(f"{row['expected_deg']:.1f}°" for row in known.values()),
         }
         lines.append(_AFTER.format(**told))
