@@ -73,6 +73,18 @@ def test_the_worst_axis_of_a_joint_counts_and_none_that_is_unknown(performance):
     assert with_best_axes(plain, [even, even])[1] == {"left_hip": 0}
 
 
+def test_what_is_the_same_in_every_recording_does_not_choose(performance):
+    """A knee's own trial shows that its twist goes with the angle; a short arc elsewhere cannot."""
+    plain = performance.skeleton
+    told = {"joints": {"left_knee": {"other_reading_deg": 4.0}}}
+    own = known(plain, left_knee=4.2, right_knee=4.2)
+    own = replace(own, history=(*own.history, Step("parameterization", findings=told)))
+    elsewhere = known(plain, left_knee=2.5, right_knee=2.5)
+    bearing, chosen = with_best_axes(plain, [elsewhere, own])
+    assert chosen == {"left_knee": 1, "right_knee": 0}  # ±1.3° without it
+    assert bearing.joint("left_knee").axes_uncertainty == pytest.approx(np.deg2rad(4.2))
+
+
 def test_what_was_found_of_the_axes_comes_along(performance):
     plain = performance.skeleton
 

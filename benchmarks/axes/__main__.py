@@ -17,6 +17,7 @@ from benchmarks.axes import (
     floor,
     free_motion,
     normalization,
+    outlying,
     segments,
     solved,
     third_axis,
@@ -110,6 +111,9 @@ SECTIONS: Mapping[str, Callable[[Run, Path], dict[str, Any]]] = {
     },
     "third": lambda run, _: {
         "third": third_axis.summary(run("third axis", third_axis.run, third_axis.TASKS))
+    },
+    "hinges": lambda run, _: {
+        "hinges": outlying.summary(run("hinges", outlying.run, outlying.TASKS))
     },
     "free": lambda run, _: {
         "free": free_motion.summary(run("free motion", free_motion.run, free_motion.TASKS))

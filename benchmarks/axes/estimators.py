@@ -15,6 +15,7 @@ from benchmarks.axes.generator import (
     make_calibration,
 )
 from benchmarks.axes.measures import axis_errors
+from kinesphere.data import Joint
 from kinesphere.parameterization import AxesSettings, ParameterizationSettings, parameterize
 from kinesphere.parameterization.axes import AXES, find_axes
 from kinesphere.parameterization.view import view_joint
@@ -63,9 +64,14 @@ def run(cone: str, noise: str, seed: int) -> dict[str, list[float]]:
 
 def whole_stage(joint: TrueJoint, **options: Any) -> tuple[Array, Array, str]:
     """Return the axes, (2, 3), and rest, (3, 3), that the whole stage finds, and their source."""
-    settings = ParameterizationSettings(axes=AxesSettings(counts="joint_01=2", **options))
-    solved = parameterize(joint.motion, settings).skeleton.joints[0]
+    solved = whole_stage_of(joint, 2, **options)
     return np.asarray(solved.axes), np.asarray(solved.rest), str(solved.axes_source)
+
+
+def whole_stage_of(joint: TrueJoint, n_axes: int, **options: Any) -> Joint:
+    """Return the joint that the whole stage finds, asked for so many axes."""
+    settings = ParameterizationSettings(axes=AxesSettings(counts=f"joint_01={n_axes}", **options))
+    return parameterize(joint.motion, settings).skeleton.joints[0]
 
 
 TASKS = [

@@ -3,12 +3,16 @@
 import numpy as np
 import pytest
 from benchmarks.axes.bends import HIGH, LOW, bends, scatter
+from benchmarks.axes.means import MEANS, plain_mean, resisting_mean, spatial_median
+from benchmarks.axes.outlying import coverage, make_hinge
 from benchmarks.axes.same_person import summary, turned
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from kinesphere.geometry.rotations import rotation_about
+from kinesphere.geometry.rotations import rotation_about, rotation_angle
+from kinesphere.parameterization.samples import runs
 
+PLAIN = next(iter(MEANS))
 UP = np.array([0.0, 1.0, 0.0])
 
 
@@ -45,7 +49,7 @@ def test_scatter_leads_to_the_difference_of_halves_that_it_leads_to(rng):
         ]
         row = scatter(found, 5)
         expected.append(row["expected_deg"])
-        halves.append(row["halves_deg"])
+        halves.append(row["means_deg"][PLAIN])
     rms = [np.sqrt(np.mean(np.square(x))) for x in (expected, halves)]
     assert rms[0] == pytest.approx(2.0 * np.sqrt(2 * 2 / 5), rel=0.05)
     assert rms[0] == pytest.approx(rms[1], rel=0.1)
@@ -56,14 +60,55 @@ def test_hysteresis_and_the_first_bend_are_told_apart():
     found = [(i, i % 2 == 0, tilted(t)) for i, t in enumerate(tilts)]
     row = scatter(found, 4.5)
     assert row["n"] == 10
-    assert row["halves_deg"] == pytest.approx(44 / 5 - 12 / 5, rel=0.02)
-    assert row["without_first"]["halves_deg"] == pytest.approx(12 / 5 - 4 / 3, rel=0.01)
+    assert row["means_deg"][PLAIN] == pytest.approx(44 / 5 - 12 / 5, rel=0.02)
+    assert row["without_first"]["means_deg"][PLAIN] == pytest.approx(12 / 5 - 4 / 3, rel=0.01)
     same = scatter([(i, i % 2 == 0, tilted(0.0)) for i in range(8)], 4)
     assert same["hysteresis_deg"] == same["scatter_deg"] == 0.0
     assert scatter(found[2:], 7)["hysteresis_deg"] == pytest.approx(4.0, abs=0.01)
     assert scatter(found[:5], 2) is None
     assert scatter(found, 0) is None
     assert bends(np.tile(np.eye(3), (5, 1, 1)), np.full(5, (LOW + HIGH) / 2)) == []
+
+
+def test_means_that_resist_leave_an_outlier_aside():
+    """Nine axes within a degree and one at 40°: Weiszfeld's and the t mean stay with the nine."""
+    axes = np.array([tilted(t) for t in [*np.linspace(-1.0, 1.0, 9), 40.0]])
+    plain, resisting, median = (mean(axes) for mean in MEANS.values())
+    assert np.rad2deg(np.arccos(plain @ tilted(0.0))) > 3.5
+    for mean in (resisting, median):
+        assert np.rad2deg(np.arccos(mean @ tilted(0.0))) < 0.5
+        assert np.linalg.norm(mean) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("mean", MEANS.values())
+@pytest.mark.parametrize("tilts", [[3.0], [1.0, 5.0], [3.0] * 4, [-2.0, 8.0, 3.0, 3.0]])
+def test_means_of_few_or_alike_axes_are_the_plain_one(mean, tilts):
+    assert_allclose(mean(np.array([tilted(t) for t in tilts])), tilted(3.0), atol=1e-9)
+
+
+def test_means_turn_with_their_axes(rng):
+    axes = rng.normal(scale=0.05, size=(7, 3)) + np.array([0.0, 0.0, 1.0])
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    turn = Rotation.random(rng=rng).as_matrix()
+    for mean in (plain_mean, resisting_mean, spatial_median):
+        assert_allclose(mean(axes @ turn.T), turn @ mean(axes), atol=1e-9)
+
+
+def test_only_the_first_bend_of_a_hinge_is_lifted():
+    joint = make_hinge(np.random.default_rng(4), "clean", 6.0)
+    off = np.rad2deg(rotation_angle(joint.rotations @ np.swapaxes(joint.clean.rotations, 1, 2)))
+    first, *others = runs(joint.moving)
+    assert len(others) == 4
+    assert off[slice(*first)].max() == pytest.approx(6.0, abs=0.01)
+    off[slice(*first)] = 0.0
+    assert off.max() < 1e-6
+    plain = make_hinge(np.random.default_rng(4), "clean", 0.0)
+    assert_allclose(plain.rotations, joint.clean.rotations, atol=1e-12)
+
+
+def test_errors_are_counted_against_what_was_said_of_them():
+    errors, said = np.array([0.5, 1.5, 3.0, 1.0]), np.array([1.0, 1.0, 1.0, 2.0])
+    assert coverage(errors, said) == {"within_1_percent": 50.0, "within_2_percent": 75.0}
 
 
 def test_frames_are_laid_upon_each_other_by_their_markers(rng):

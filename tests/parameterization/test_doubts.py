@@ -14,7 +14,7 @@ SETTINGS = AxesSettings()
 AXIS = np.array([[0.0, 0.0, 1.0]])
 
 
-def quality(range_deg, halves_deg):
+def quality(range_deg, halves_deg, reading_deg=0.0):
     """Return the quality of one axis."""
     return AxesQuality(
         labels=np.zeros(1, dtype=np.intp),
@@ -23,6 +23,7 @@ def quality(range_deg, halves_deg):
         explained=1.0,
         halves=np.deg2rad([halves_deg]),
         heights=np.zeros(1),
+        readings=np.deg2rad([reading_deg]),
     )
 
 
@@ -54,6 +55,17 @@ def test_an_axis_is_doubted_by_the_whole_of_its_uncertainty(range_deg, halves_de
     uncertain = np.rad2deg(quality(range_deg, halves_deg).uncertainty[0])
     assert (uncertain > SETTINGS.largest_uncertainty) == doubted
     assert bool(doubts(range_deg, halves_deg)) == doubted
+
+
+def test_another_reading_of_the_movement_is_part_of_it():
+    told = quality(80.0, 12.0, 9.0), AXIS, None, swing(80.0, 0.0), SETTINGS
+    assert np.rad2deg(told[0].uncertainty[0]) == pytest.approx(
+        np.sqrt(6**2 + 1.432**2 + 9**2), 1e-3
+    )
+    (said,) = reasons_to_doubt(*told)
+    assert said.startswith("an axis is uncertain by 10.9°")
+    assert said.endswith("if the limb twists with the angle, it is 9° off")
+    assert "twists" not in doubts(12.5, 12.0)[0]
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from kinesphere.geometry.rotations import rotation_about
-from kinesphere.parameterization.axes.hinge import hinge_axis
+from kinesphere.parameterization.axes.cone_and_twist import ConeAndTwist
+from kinesphere.parameterization.axes.hinge import USUAL_CONE, hinge_axis, other_reading
+from kinesphere.parameterization.axes.likeliest import likeliest_axis
 from kinesphere.parameterization.axes.phase_log_pca import phase_log_pca
 from kinesphere.parameterization.free_hinge import free_hinge, worse_than_body
 from kinesphere.parameterization.samples import JointSamples
@@ -54,6 +56,41 @@ def test_twist_cannot_touch_the_axis_of_a_hinge(rng, cone):
     assert degrees(hinge_axis(samples, LONG_AXIS[None])[0], axis) < EXACT
     by_orientation = phase_log_pca(samples, 1, AxesSettings())[0]
     assert degrees(by_orientation, axis) > 1.0  # what twist does to the start
+
+
+def screwed(rng, coupling, noise, n=2000):
+    """Return a limb that bends by up to 110° and twists in proportion, (samples, axis)."""
+    axis = np.array([1.0, 0.0, 0.0])
+    angles = waves(rng, n, 0, 110)
+    rotations = rotation_about(axis, angles) @ rotation_about(LONG_AXIS, coupling * angles)
+    off = Rotation.from_rotvec(np.deg2rad(noise) * rng.normal(size=(n, 3))).as_matrix()
+    rotations = off @ rotations
+    return JointSamples(rotations, rotations @ LONG_AXIS, ((0, n),), RATE, LONG_AXIS), axis
+
+
+@pytest.mark.parametrize("coupling", [0.1, -0.07, 0.0])
+def test_twist_that_goes_with_the_angle_is_found_and_leaves_the_axis_alone(rng, coupling):
+    samples, axis = screwed(rng, coupling, 0.3)
+    errors = ConeAndTwist.of(samples, samples.phases, 400)
+    start = Rotation.from_rotvec([0.0, 0.1, 0.05]).apply(axis)
+    found = likeliest_axis(errors, start, 30, USUAL_CONE, 4.0, coupling=0.1)
+    assert degrees(found.axis, axis) < 0.5
+    assert found.coupling == pytest.approx(coupling, abs=4 * found.deviation)
+    assert 0 < found.deviation < 0.02
+    alone = likeliest_axis(errors, start, 30, USUAL_CONE, 4.0)
+    assert (alone.coupling, alone.deviation) == (0.0, 0.0)
+
+
+def test_an_axis_that_such_twist_puts_off_says_so_and_others_do_not(rng):
+    samples, axis = screwed(rng, 0.1, 1.0)
+    found = hinge_axis(samples, axis[None])[0]
+    off, said = degrees(found, axis), np.rad2deg(other_reading(samples, found))
+    assert off > 2.0
+    assert said == pytest.approx(off, rel=0.3)
+    samples, axis = screwed(rng, 0.0, 1.0)
+    assert np.rad2deg(other_reading(samples, hinge_axis(samples, axis[None])[0])) < 0.5
+    clean, axis = hinge(rng)
+    assert np.rad2deg(other_reading(clean, hinge_axis(clean, axis[None])[0])) < 0.1
 
 
 def test_a_limb_that_dwells_says_nothing_new(rng):

@@ -45,6 +45,8 @@ class Functional:
     halves_mm: float
     along_mm: float
     halves_deg: float
+    landmarks_deg: float
+    """The same where the layout's landmarks have their say, as when a user solves each half."""
     told_mm: float
     """What the uncertainties of the halves' centres lead to expect between them, rms."""
     told_deg: float
@@ -76,12 +78,14 @@ def _row(trial: str, name: str) -> Functional:
     model = replace(chosen, joints=tuple(replace(j, landmarks=()) for j in chosen.joints))
     whole = solve(recording, model)
     middle = recording.n_frames // 2
-    halves = [_half(recording, model, part) for part in (slice(middle), slice(middle, None))]
+    parts = slice(middle), slice(middle, None)
+    halves = [_half(recording, model, part) for part in parts]
     knee = name.endswith("knee")
     eighth = np.arange(recording.n_frames) * 8 // recording.n_frames % 2
     blocks = [_half(recording, model, np.flatnonzero(eighth == k)) for k in (0, 1)]
     ours = _compared(halves, name, _ours, knee=knee)
     mixed = _compared(blocks, name, _ours, knee=knee)
+    aided = [_half(recording, chosen, part) for part in parts] if knee else halves
     peer = _compared(halves, name, _peer, knee=knee)
     here, there = _ours(whole, name), _peer(whole, name)
     poses = _relative(whole, name)
@@ -93,6 +97,7 @@ def _row(trial: str, name: str) -> Functional:
         halves_mm=ours[0],
         along_mm=ours[1],
         halves_deg=ours[2],
+        landmarks_deg=_compared(aided, name, _ours, knee=knee)[2],
         told_mm=_told(halves, name, knee=knee),
         told_deg=_told_axis(halves, name) if knee else np.nan,
         blocks_mm=mixed[0],

@@ -190,22 +190,26 @@ def _functional(rows: Sequence[dict[str, Any]], peer: str) -> str:
         "is from the motion. *Halves* are the first and the second half of the trial, in which "
         "people make different movements (a hip 77° in one, 53° in the other); *eighths* every "
         "second eighth against the rest. *Told* is the rms difference that the uncertainties in "
-        "`skeleton.json` lead to expect between the halves. Centres of knees across their axis; "
+        "`skeleton.json` lead to expect between the halves; those of axes hold what is alike in "
+        "both, too. Centres of knees across their axis; "
         f"*along* it they are open. The peer is {whose}: SCoRE and SARA on the same poses, in "
         "the same run. "
-        "*SCoRE* compares its centre with the plain one of this project; the time ratio is the "
-        "peer's processor time over that of the plain one.\n",
-        "| joint | centre | halves | told | along | axis, halves | told | eighths | axis, eighths "
+        "*With landmarks*: each half solved as a user would solve it. *SCoRE* compares the peer's "
+        "centre with the plain one of this project; the time ratio is the peer's processor time "
+        "over that of the plain one.\n",
+        "| joint | centre | halves | told | along | axis, halves | with landmarks | told | eighths "
+        "| axis, eighths "
         "| peer, halves | peer axis, halves | to the peer | SCoRE | axis to the peer "
         "| time ratio |",
-        "|---|---|" + "---:|" * 13,
+        "|---|---|" + "---:|" * 14,
     ]
     for row in rows:
         lines.append(
             f"| {row['joint'].replace('_', ' ')} | {row['observability']} "
             f"| {_n(row['halves_mm'], 'mm')} | {_n(row['told_mm'], 'mm')} "
             f"| {_n(row['along_mm'], 'mm')} "
-            f"| {_n(row['halves_deg'], '°')} | {_n(row['told_deg'], '°')} "
+            f"| {_n(row['halves_deg'], '°')} | {_n(row['landmarks_deg'], '°')} "
+            f"| {_n(row['told_deg'], '°')} "
             f"| {_n(row['blocks_mm'], 'mm')} "
             f"| {_n(row['blocks_deg'], '°')} | {_n(row['peer_halves_mm'], 'mm')} "
             f"| {_n(row['peer_halves_deg'], '°')} | {_n(row['peer_mm'], 'mm')} "

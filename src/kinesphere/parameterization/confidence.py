@@ -38,15 +38,19 @@ class AxesQuality:
     """(n_axes,) rad, largest disagreement of axes found from two halves; NaN where untested."""
     heights: Array
     """(n_axes,) cosine of the cone on which the limb moves about each axis; NaN without phases."""
+    readings: Array
+    """(n_axes,) rad, how far another reading of the same movement is off, rms by its probability:
+    `kinesphere.parameterization.axes.hinge.other_reading`; 0 where there is none."""
 
     @property
     def uncertainty(self) -> Array:
         """(n_axes,) rad, standard deviation of each axis.
 
         What halves suggest (they have twice the variance of the whole, their difference four
-        times), and what skin does to both halves alike: `TISSUE` over the arc.
+        times), and what is alike in both: skin, by `TISSUE` over the arc, and twist that goes with
+        a hinge's angle.
         """
-        return with_tissue(self.halves / 2, self.ranges)
+        return with_tissue(np.hypot(self.halves / 2, self.readings), self.ranges)
 
     def ordered(self, order: Sequence[int]) -> "AxesQuality":
         """Return the same for axes in another order."""
@@ -58,6 +62,7 @@ class AxesQuality:
             explained=self.explained,
             halves=self.halves[at],
             heights=self.heights[at],
+            readings=self.readings[at],
         )
 
 
@@ -88,6 +93,7 @@ def assess_axes(
         explained=explained / max(total, 1e-300),
         halves=halves_disagreement(samples, axes, labels, find, enough),
         heights=heights,
+        readings=np.zeros(n_axes),
     )
 
 

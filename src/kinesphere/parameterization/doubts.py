@@ -6,6 +6,8 @@ from kinesphere.data import Array
 from kinesphere.parameterization.confidence import AxesQuality
 from kinesphere.parameterization.settings import AxesSettings
 
+WORTH_TELLING = 1.0  # deg
+
 
 def reasons_to_doubt(
     quality: AxesQuality, axes: Array, nominal: Array | None, positions: Array, s: AxesSettings
@@ -72,7 +74,10 @@ def uncertain(quality: AxesQuality) -> str:
     """Return how uncertain the least certain axis is, and what makes it so, as a clause."""
     worst = int(quality.uncertainty.argmax())
     degrees = np.rad2deg([quality.uncertainty[worst], quality.ranges[worst], quality.halves[worst]])
-    return (
+    told = (
         "an axis is uncertain by {:.1f}°: its movement covers {:.0f}°, and two halves of it differ "
         "by {:.0f}°"
     ).format(*degrees)
+    if (other := np.rad2deg(quality.readings[worst])) >= WORTH_TELLING:
+        told += f"; if the limb twists with the angle, it is {other:.0f}° off"
+    return told

@@ -136,6 +136,8 @@ def fit_joint(
         "axes_apart_deg": angles_between(axes),
         **_quality_findings(quality),
     }
+    if source == "movement" and free is None and quality is not None and quality.readings.any():
+        findings["other_reading_deg"] = float(np.rad2deg(quality.readings[0]))
     kept = ""
     if free is not None:
         left, body_left = np.rad2deg(free.error), np.rad2deg(free.body_error)

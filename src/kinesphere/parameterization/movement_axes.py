@@ -11,6 +11,8 @@ from kinesphere.parameterization.angles import two_axis_angles
 from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes import find_axes
 from kinesphere.parameterization.axes.fit import phase_labels
+from kinesphere.parameterization.axes.hinge import other_reading
+from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.confidence import AxesQuality, assess_axes
 from kinesphere.parameterization.doubts import apart, reasons_to_doubt
@@ -115,6 +117,8 @@ def _judged(
     if len(axes) < n_axes:
         told = f"only {len(axes)} of {n_axes} main movements is there"
         return MovementAxes(axes, quality, (told,))
+    if n_axes == 1 and options.refine and options.method in BY_ORIENTATION:
+        quality = replace(quality, readings=np.array([other_reading(samples, axes[0])]))
     if free:
         quality = replace(quality, ranges=_free_ranges(view, axes))
         options = replace(options, smallest_explained=0.0)

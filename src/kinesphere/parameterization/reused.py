@@ -21,6 +21,7 @@ CARRIED = (
     "conditioning",
     "explained",
     "halves_disagreement_deg",
+    "other_reading_deg",
     "held_out_deg",
     "held_out_body_deg",
     "twist_axis_off_limb_deg",

@@ -70,7 +70,9 @@ def with_best_axes(
 
     Laboratories record a functional trial for each joint: a hip's axes are measured in one, a
     knee's in another. Of the solutions that measured a joint's axes (none of which is the body
-    frame's), the one with the smallest largest uncertainty serves; the first of equal ones.
+    frame's), the one with the smallest largest uncertainty serves; the first of equal ones. What
+    twist that goes with the angle makes unsure does not count: it is the same in every recording,
+    and a long movement only shows it.
 
     Parameters
     ----------
@@ -96,7 +98,7 @@ def with_best_axes(
         }
         nothing = replace(joint, axes=None, rest=None, axes_source=None, axes_uncertainty=None)
         if others:
-            best = min(others, key=lambda i: _uncertainty(others[i]))
+            best = min(others, key=lambda i: _uncertainty(others[i], sources[i]))
             other = others[best]
             chosen[joint.name] = best
             nothing = replace(
@@ -118,9 +120,13 @@ def _measured(joint: Joint) -> bool:
     return joint.axes is not None and joint.rest is not None and joint.axes_source != "body"
 
 
-def _uncertainty(joint: Joint) -> float:
-    """Return the largest that is known, rad; infinite where none is."""
+def _uncertainty(joint: Joint, source: Skeleton) -> float:
+    """Return the largest that is known, rad, without another reading; infinite where none is."""
     told = joint.axes_uncertainty
     if told is None or not np.isfinite(told).any():
         return np.inf
+    other = told_of(joint.name, source).get("other_reading_deg")
+    told = np.array(told)
+    if isinstance(other, float):  # of a hinge, which is proximal to what was added to it
+        told[-1] = np.sqrt(max(told[-1] ** 2 - np.deg2rad(other) ** 2, 0.0))
     return float(np.nanmax(told))

@@ -3,8 +3,9 @@
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.parameterization.axes.cone_and_twist import Cone, ConeAndTwist, likeliest_axis
+from kinesphere.parameterization.axes.cone_and_twist import ConeAndTwist
 from kinesphere.parameterization.axes.fit import moving_positions, plane_normal
+from kinesphere.parameterization.axes.likeliest import Cone, likeliest_axis
 from kinesphere.parameterization.samples import JointSamples
 
 MOST_FRAMES = 400  # more change the axis by less than its uncertainty
@@ -15,6 +16,10 @@ ROUNDS = (6, 20)  # of a trial and of the last fit
 FREEDOM = 4.0  # heavy tails: a joint called a hinge leaves its cone at times
 USUAL_CONE = Cone(np.pi / 2, np.deg2rad(20.0))  # carrying angles reach 20°; without any such
 # knowledge a cluster of directions always lies on some tiny circle
+USUAL_COUPLING = (
+    0.1  # rad of twist for a rad of the angle: knees turn by some 10° while they are bent
+)
+# (screw-home), and skin takes part in a movement by a tenth
 
 
 def hinge_axis(samples: JointSamples, starts: Array) -> Array:
@@ -30,15 +35,48 @@ def hinge_axis(samples: JointSamples, starts: Array) -> Array:
     starts : (n, 3)
         Where to start from, beside the planes that directions lie in; the likeliest end counts.
     """
-    parts = [samples.positions[a:b] for a, b in samples.phases]
+    parts = _parts(samples)
     centred = np.concatenate([part - part.mean(axis=0) for part in parts])
     tried = np.vstack([starts, plane_normal(centred), plane_normal(moving_positions(samples))])
-    cell = _arc(parts) / CELLS
-    few = ConeAndTwist.of(samples, samples.phases, TRIAL_FRAMES, cell)
+    few = _errors(samples, TRIAL_FRAMES)
     ends = (likeliest_axis(few, start, ROUNDS[0], USUAL_CONE, FREEDOM) for start in tried)
-    best = min(ends, key=lambda end: end[1])[0]
-    errors = ConeAndTwist.of(samples, samples.phases, MOST_FRAMES, cell)
-    return likeliest_axis(errors, best, ROUNDS[1], USUAL_CONE, FREEDOM)[0][None]
+    best = min(ends, key=lambda end: end.cost).axis
+    errors = _errors(samples, MOST_FRAMES)
+    return likeliest_axis(errors, best, ROUNDS[1], USUAL_CONE, FREEDOM).axis[None]
+
+
+def other_reading(samples: JointSamples, axis: Array) -> float:
+    """Return how far the axis of a hinge may be off for taking twist as error, rad.
+
+    Twist that goes with the angle tilts the axis that orientations tell, and neither repetition nor
+    halves show it: an axis about which the limb may twist in proportion to the angle can be
+    another. The square of the angle between both counts by the probability that there is such a
+    coupling, by its Bayes factor at even odds (Savage-Dickey ratio: Dickey 1971,
+    doi:10.1214/aoms/1177693507). Arcs too short to show a coupling show none.
+
+    Parameters
+    ----------
+    samples
+        One joint with at least one phase.
+    axis : (3,)
+        From `hinge_axis`.
+    """
+    errors = _errors(samples, MOST_FRAMES)
+    other = likeliest_axis(errors, axis, ROUNDS[1], USUAL_CONE, FREEDOM, USUAL_COUPLING)
+    if not other.deviation > 0:
+        return 0.0
+    against = np.exp(-((other.coupling / other.deviation) ** 2) / 2)
+    probability = 1 / (1 + USUAL_COUPLING / other.deviation * against)
+    apart = np.arctan2(np.linalg.norm(np.cross(other.axis, axis)), abs(other.axis @ axis))
+    return float(np.sqrt(probability) * apart)
+
+
+def _errors(samples: JointSamples, most: int) -> ConeAndTwist:
+    return ConeAndTwist.of(samples, samples.phases, most, _arc(_parts(samples)) / CELLS)
+
+
+def _parts(samples: JointSamples) -> list[Array]:
+    return [samples.positions[a:b] for a, b in samples.phases]
 
 
 def _arc(parts: list[Array]) -> float:

@@ -3,8 +3,9 @@
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.parameterization.axes.cone_and_twist import ConeAndTwist, likeliest_axis
+from kinesphere.parameterization.axes.cone_and_twist import ConeAndTwist
 from kinesphere.parameterization.axes.fit import phase_labels
+from kinesphere.parameterization.axes.likeliest import likeliest_axis
 from kinesphere.parameterization.samples import JointSamples
 
 MOST_FRAMES = 400  # of one axis; more change the axis by less than its uncertainty
@@ -35,5 +36,5 @@ def refine_axes(samples: JointSamples, axes: Array) -> Array:
         mine = tuple(phase for phase, at in zip(samples.phases, labels, strict=True) if at == k)
         if mine:
             errors = ConeAndTwist.of(samples, mine, MOST_FRAMES)
-            refined[k] = likeliest_axis(errors, axes[k], ROUNDS)[0]
+            refined[k] = likeliest_axis(errors, axes[k], ROUNDS).axis
     return np.asarray(refined)
