@@ -53,7 +53,7 @@ def stage_warnings(
     warnings: list[str] = []
     if method != "body":
         for source, sentence in (
-            ("body", "the main movements do not tell these axes, the body frame's serve instead"),
+            ("body", f"the main movements do not tell these axes, {INSTEAD}"),
             ("movement", "these axes are doubtful, kept because that was asked for"),
         ):
             doubted = [
