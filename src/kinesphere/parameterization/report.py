@@ -14,6 +14,12 @@ LARGE_SHARE = 0.25
 """Of the frames: a hinge whose limb is out of its reach more often than that is no plain hinge."""
 
 
+INSTEAD = (
+    "the body frame's serve instead (to have them measured, move each of these joints twice or more "
+    "about one axis at a time, by 20° and more, or name such a recording with --calibration-from)"
+)
+
+
 class Told(NamedTuple):
     """What the movement of one joint tells, once its frames may be forgotten."""
 
