@@ -15,8 +15,8 @@ LARGE_SHARE = 0.25
 
 
 INSTEAD = (
-    "the body frame's serve instead (to have them measured, move each of these joints twice or more "
-    "about one axis at a time, by 20° and more, or name such a recording with --calibration-from)"
+    "the body frame's serve instead (to have them measured, move each of these joints about one "
+    "axis at a time, twice and by 20° or more, or name such a recording with --calibration-from)"
 )
 
 
