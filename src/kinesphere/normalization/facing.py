@@ -105,7 +105,9 @@ def find_facing(
     turn, decided_by = _decide(witnesses, score, said, bodies[best], named=named, facing=facing)
     warnings = _objections(turn, decided_by, score, said, named=named)
     if facing is None and not named:
-        warnings += _little_told(score, without_walk, said)
+        final = -1.0 if turn else 1.0
+        told = ", ".join(f"{name} {final * w.score:+.2f}" for name, w in witnesses.items())
+        warnings += _little_told(score, without_walk, told)
     return Verdict(turn, decided_by, witnesses, warnings)
 
 
@@ -171,9 +173,9 @@ def _little_told(score: float, without_walk: float, said: str) -> tuple[str, ...
         return ()
     little = "little tells" if abs(score) < _SURE else "the walk alone tells"
     return (
-        f"{little} front from back ({said} for the front that was tried, against it where "
-        "negative), so left and right may be exchanged; pass facing (--facing), e.g. '+x' for the "
-        "world direction the person faces while standing",
+        f"{little} front from back ({said}; negative ones are against it), so left and right may "
+        "be exchanged; pass facing (--facing), e.g. '+x' for the world direction the person faces "
+        "while standing",
     )
 
 
