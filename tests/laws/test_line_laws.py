@@ -13,6 +13,7 @@ from kinesphere.pipeline import solve
 from kinesphere.synthetic import make_performance, spoil_with_gaps, spoil_with_noise
 
 SAME = 1e-5  # rad; iterations stop where steps are small, from starts that differ by rounding
+MIRROR = np.diag([1.0, 1.0, -1.0])
 REAL = [
     "plugin-gait/pycgm_movement.c3d",
     "plugin-gait/PiG_Motion-FlatFoot-Full.c3d",
@@ -103,6 +104,40 @@ def test_the_order_of_markers_does_not_matter(case):
         residuals=None if residuals is None else residuals[:, order],
     )
     assert_same(solve(permuted, case.model), case.solution)
+
+
+def test_a_mirrored_person_bends_the_other_side_alike(case):
+    """Left is called right and the other way round: nothing else tells the image."""
+    labels = case.recording.labels
+    markers = case.recording.markers * [-1.0, 1.0, 1.0]
+    image = solve(
+        replace(case.recording, markers=markers, labels=tuple(swapped(n, labels) for n in labels)),
+        case.model,
+    )
+    ours, theirs = image.parameters, case.solution.parameters
+    for j, joint in enumerate(theirs.skeleton.joints):
+        at = ours.skeleton.joint_names.index(other_side(joint.name))
+        same = ours.skeleton.joints[at]
+        assert same.axes_source == joint.axes_source
+        assert_allclose(np.abs(same.axes), np.abs(joint.axes), atol=SAME)
+        assert_allclose(same.rest, MIRROR @ joint.rest @ MIRROR, atol=SAME)
+        off = np.abs(ours.angles[:, at]) - np.abs(theirs.angles[:, j])
+        off = off[np.isfinite(off)]
+        assert np.median(np.abs(off)) < SAME
+
+
+def swapped(label: str, labels: tuple[str, ...]) -> str:
+    """Return the label of the other side, where there is one."""
+    person, colon, name = label.rpartition(":")
+    other = person + colon + {"L": "R", "R": "L"}.get(name[:1], "") + name[1:]
+    return other if other in labels else label
+
+
+def other_side(name: str) -> str:
+    for side, other in (("left_", "right_"), ("right_", "left_")):
+        if name.startswith(side):
+            return other + name.removeprefix(side)
+    return name
 
 
 @pytest.mark.parametrize("unit", ["m", "cm", "mm"])

@@ -124,6 +124,9 @@ def make_doll(
             moved = places[name] + bodies[name] @ (point - begins[name])
             store[:, i] = walk + (world @ moved[..., None])[..., 0]
         markers = markers_around(rng, begins[name], ends[name], scale)
+        if name.endswith("foot"):  # a heel, last
+            heel = begins[name] - 0.3 * (ends[name] - begins[name])
+            markers = np.vstack([markers, heel])
         limbs.append(
             Limb(
                 name=name,

@@ -70,6 +70,28 @@ def test_the_walk_tells_people_without_feet(doll, tools):
     assert front(result) @ [1, 0, 0] > 0.99
 
 
+def doubts(result):
+    return [said for said in result.history[-1].warnings if "front from back" in said]
+
+
+def test_a_front_that_hangs_on_little_is_doubted(doll, tools):
+    """The walk alone, which may be backwards; or witnesses that hardly agree."""
+    walk = np.outer(np.linspace(0, 3, 80), [1.0, 0.0, 0.0])
+    legs = without(tools, "foot", "hand")
+    (said,) = doubts(
+        normalize(tools.renamed(doll(legs, n_frames=80, stance=upright(tools), walk=walk).motion))
+    )
+    assert said.startswith("the walk alone tells")
+    assert "--facing" in said
+    both = doll(n_frames=80, walk=-walk).motion
+    (said,) = doubts(normalize(tools.renamed(both)))
+    assert said.startswith("little tells")
+    assert not doubts(normalize(tools.renamed(doll(n_frames=80, walk=walk).motion)))
+    assert not doubts(normalize(tools.renamed(doll(n_frames=80).motion)))
+    assert not doubts(normalize(tools.renamed(both), facing="+x"))
+    assert not doubts(normalize(both))  # named
+
+
 def test_feet_outvote_somebody_who_walks_backwards(doll, tools):
     walk = np.outer(np.linspace(0, -3, 80), [1.0, 0.0, 0.0])
     result = normalize(tools.renamed(doll(n_frames=80, walk=walk).motion))

@@ -7,7 +7,7 @@ import pytest
 
 from kinesphere.parameterization.confidence import AxesQuality
 from kinesphere.parameterization.doubts import reasons_to_doubt
-from kinesphere.parameterization.report import reach_warnings
+from kinesphere.parameterization.report import reach_warnings, stage_warnings
 from kinesphere.parameterization.settings import AxesSettings
 
 SETTINGS = AxesSettings()
@@ -76,6 +76,16 @@ def test_a_limb_that_leaves_its_cone_wants_a_wide_movement(range_deg, off_deg, d
     found = doubts(range_deg, 2.0, off_deg)
     assert bool(found) == doubted
     assert not doubted or "leaves the cone" in found[0]
+
+
+def test_who_loses_axes_is_told_why_and_what_to_do():
+    fit = SimpleNamespace(
+        source="body", doubts=("an axis is uncertain",), kept="", loose="", added="", misfit=""
+    )
+    (said,) = stage_warnings({}, {"right_elbow": fit}, "phase-log-pca")
+    assert said.endswith("right_elbow (an axis is uncertain)")
+    assert "about one axis at a time" in said
+    assert "--calibration-from" in said
 
 
 @pytest.mark.parametrize(

@@ -129,6 +129,20 @@ class TestAgainstTheFile:
         )
         assert_array_equal(world.markers, statue.markers)
 
+    def test_where_nobody_shows_it_a_floor_overhead_is_told(self, walker):
+        """Labels hide who it is; feet on a floor stay, what is above them does not."""
+        hidden = tuple(f"m{i}" for i in range(walker.n_markers))
+        sway = np.sin(np.arange(walker.n_frames) / 9.0)[:, None] * (walker.markers[..., 1] > 1.0)
+        markers = walker.markers + 0.1 * sway[..., None] * UP
+        told = {
+            field: step(orient(replace(walker, markers=markers, labels=hidden, up=field)))
+            for field in ("+y", "-y")
+        }
+        assert told["-y"].findings["up"] == "-y"
+        (said,) = (w for w in told["-y"].warnings if "upper end" in w)
+        assert "set orientation.up to +y" in said
+        assert not told["+y"].warnings
+
     def test_it_does_so_above_any_floor(self, statue):
         file = replace(statue, markers=statue.markers + UP, up="-y")
         assert step(orient(file)).findings["up"] == "+y"

@@ -73,11 +73,10 @@ def free_hinge(samples: JointSamples, body_axis: Array) -> FreeHinge | None:
     azimuth = np.arctan2(np.cross(middle, across) @ axis, across @ middle)
     arc = float(np.diff(np.percentile(azimuth, PERCENTILES))[0])
     moved = arc * float(np.median(np.linalg.norm(across, axis=1)))
+    jackknife = np.sqrt((FOLDS - 1) / FOLDS * np.sum(np.square(turns)))
     return FreeHinge(
         axis=axis,
-        uncertainty=float(
-            with_tissue(np.sqrt((FOLDS - 1) / FOLDS * np.sum(np.square(turns))), moved)
-        ),
+        uncertainty=float(with_tissue(np.array(jackknife), np.array(moved))),
         error=float(np.concatenate(errors).mean()),
         body_error=float(np.concatenate(body_errors).mean()),
         moved=moved,

@@ -14,6 +14,12 @@ LARGE_SHARE = 0.25
 """Of the frames: a hinge whose limb is out of its reach more often than that is no plain hinge."""
 
 
+INSTEAD = (
+    "the body frame's serve instead (to have them measured, move each of these joints about one "
+    "axis at a time, twice and by 20° or more, or name such a recording with --calibration-from)"
+)
+
+
 class Told(NamedTuple):
     """What the movement of one joint tells, once its frames may be forgotten."""
 
@@ -53,7 +59,7 @@ def stage_warnings(
     warnings: list[str] = []
     if method != "body":
         for source, sentence in (
-            ("body", "the main movements do not tell these axes, the body frame's serve instead"),
+            ("body", f"the main movements do not tell these axes, {INSTEAD}"),
             ("movement", "these axes are doubtful, kept because that was asked for"),
         ):
             doubted = [

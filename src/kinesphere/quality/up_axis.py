@@ -51,7 +51,9 @@ def judge_up(evidence: Evidence, field: UpAxis | None, wanted: UpAxis | None) ->
         said = f"up is {wanted} as asked, although the head is along {seen} from the feet"
         return Judgement(wanted, "user", (said,) if doubt else ())
     if seen is None:
-        return _from_scene(evidence) if field is None else Judgement(field, "file")
+        if field is None:
+            return _from_scene(evidence)
+        return Judgement(field, "file", _overhead_floor(evidence, field))
     if seen == field:
         return Judgement(field, "file")
     share = evidence.upright[DIRECTIONS.index(seen)]
@@ -117,6 +119,19 @@ def _has_floor(evidence: Evidence, seen: UpAxis) -> bool:
         return False
     is_zero = bool(floor[under] <= ON_FLOOR)
     return is_zero or _stays(float(sway[under]), float(sway[across].min()))
+
+
+def _overhead_floor(evidence: Evidence, field: UpAxis) -> tuple[str, ...]:
+    """Return a warning where nobody shows up, and what stays in place is on top by the field."""
+    under = DIRECTIONS.index(field)
+    floor, top = float(evidence.sway[under]), float(evidence.sway[under ^ 1])
+    if not (top < MOVING and top <= STEADIER * floor):  # also catches NaN
+        return ()
+    return (
+        f"up is {field} as the file says, but the upper end stays in place as feet on a floor do, "
+        f"and the lower one does not: set orientation.up to {DIRECTIONS[under ^ 1]} if the body "
+        "is upside down",
+    )
 
 
 def _stays(floor: float, rival: float) -> bool:
