@@ -14,7 +14,7 @@ from kinesphere.synthetic import make_performance, spoil_with_soft_tissue
 Array = NDArray[np.float64]
 
 SEEDS = range(900, 916)
-"""Actors; none of them was in view when the fit was changed last."""
+"""Actors; weights and limits of the fit were chosen on others (800 to 815)."""
 STEP = 10
 """Every so many frames are compared."""
 KINDS = ("ankle", "knee", "hip", "neck", "shoulder", "elbow")

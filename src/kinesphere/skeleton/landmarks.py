@@ -15,9 +15,11 @@ STEADY = "markers that are steady in both limbs"
 NO_LANDMARK_SHARE = 0.5
 """Without a landmark the centre is expected midway between the limbs, to this share of the way: as
 far as the markers themselves, for a foot's lie all but at the ankle."""
-NO_LANDMARK_HINGE = 0.25
-"""The same of a joint with one axis: knees and elbows lie about midway, and along the axis there is
-little else that tells."""
+NO_LANDMARK_FIRM = 0.25
+"""The same where there is little else that tells: of a joint with one axis (knees and elbows lie
+about midway), and where a limb has too few markers for a pose of its own."""
+OWN_POSE = 3
+"""Markers that give a pose."""
 
 
 def expected_centre(
@@ -46,7 +48,8 @@ def expected_centre(
     own = np.nan_to_num(mean_seen(parent.shape))
     if not np.isfinite(child).all():
         child = own
-    share = NO_LANDMARK_HINGE if joint.n_axes == 1 else NO_LANDMARK_SHARE
+    few = min(len(parent.labels), len(child_labels)) < OWN_POSE
+    share = NO_LANDMARK_FIRM if joint.n_axes == 1 or few else NO_LANDMARK_SHARE
     spread = max(share * float(np.linalg.norm(child - own)), 0.02)
     return (child + own) / 2, spread, BETWEEN
 
