@@ -1,12 +1,12 @@
 """Limbs and joint centres measured from the root outward, on a sample of the frames."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
 
 import numpy as np
 
 from kinesphere.data import Array, JointModel, TopologicalModel
 from kinesphere.errors import DegenerateMotion
-from kinesphere.geometry.centres import CentreFit, Turning, View, fit_centre
+from kinesphere.geometry.centres import Turning, View, fit_centre
 from kinesphere.geometry.joint_turns import joint_modes
 from kinesphere.geometry.pose_errors import point_covariance, pose_covariance
 from kinesphere.geometry.rigid import (
@@ -20,24 +20,12 @@ from kinesphere.skeleton.body import NOISE, Body, measure_shape, robust_rms
 from kinesphere.skeleton.landmarks import expected_centre
 from kinesphere.skeleton.limb_axes import find_axes
 from kinesphere.skeleton.lines import measure_line
+from kinesphere.skeleton.linked import LinkedJoint, fit_linked
+from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.poses import Neighbour, fit_poses
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree
-
-
-@dataclass(frozen=True)
-class MeasuredJoint:
-    """A joint centre with what it was expected to be."""
-
-    model: JointModel
-    fit: CentreFit
-    expected: Array
-    """(3,) m in the parent."""
-    spread: float
-    """m, how far off the expectation may be."""
-    source: str
-    """Where the expectation comes from."""
 
 
 def measure_chain(
@@ -60,12 +48,26 @@ def measure_chain(
     DegenerateMotion
         If the root's markers never show an orientation.
     """
+    bodies, joints = _measure_outward(tree, model, sample, settings, {})
+    if settings.link_limbs and (linked := fit_linked(tree, bodies, joints, sample, settings)):
+        bodies, joints = _measure_outward(tree, model, sample, settings, linked)
+    return bodies, joints
+
+
+def _measure_outward(
+    tree: Tree,
+    model: TopologicalModel,
+    sample: dict[str, Array],
+    settings: SkeletonSettings,
+    linked: Mapping[str, LinkedJoint],
+) -> tuple[dict[str, Body], dict[str, MeasuredJoint]]:
+    """Measure limb by limb from the root; joints that groups of limbs told are as those say."""
     bodies = {tree.root: _measure_root(tree, sample, settings)}
     find_axes(bodies[tree.root], None, tree, model, sample, settings)
     joints: dict[str, MeasuredJoint] = {}
     for joint in tree.joints:
-        parent = bodies[joint.parent]
-        body, measured = _measure_limb(joint, parent, tree, sample, settings)
+        parent, told = bodies[joint.parent], linked.get(joint.child)
+        body, measured = _measure_limb(joint, parent, tree, sample, settings, told)
         bodies[joint.child], joints[joint.child] = body, measured
         find_axes(body, parent, tree, model, sample, settings)
     return bodies, joints
@@ -82,7 +84,16 @@ def _measure_root(tree: Tree, sample: dict[str, Array], settings: SkeletonSettin
             f"together off a line; at least three are needed to tell where it points"
         )
     shape, noise, fit = measured
-    return Body(tree.root, None, labels, shape, noise, rotations=fit.rotations, shifts=fit.shifts)
+    return Body(
+        tree.root,
+        None,
+        labels,
+        shape,
+        noise,
+        rotations=fit.rotations,
+        shifts=fit.shifts,
+        own_pose=True,
+    )
 
 
 def _measure_limb(
@@ -91,6 +102,7 @@ def _measure_limb(
     tree: Tree,
     sample: dict[str, Array],
     settings: SkeletonSettings,
+    linked: LinkedJoint | None,
 ) -> tuple[Body, MeasuredJoint]:
     labels = tree.markers[joint.child]
     own = cloud(labels, sample)
@@ -106,16 +118,21 @@ def _measure_limb(
         parent.pose_covariance,
         None if solid is None else _turning(solid, parent, own, cloud(parent.labels, sample)),
     )
-    fit = fit_centre(
-        view,
-        expected,
-        spread,
-        hidden=settings.soft_tissue,
-        hinge=parent.right if joint.n_axes == 1 else None,
-        tighter=settings.hinge,
-    )
+    fit = None if linked is None else linked.seen_from(parent, spread)
+    if fit is None:
+        linked = None
+        fit = fit_centre(
+            view,
+            expected,
+            spread,
+            hidden=settings.soft_tissue,
+            hinge=parent.right if joint.n_axes == 1 else None,
+            tighter=settings.hinge,
+        )
     measured = MeasuredJoint(joint, fit, expected, spread, source)
     centre = out_of_frame(parent.rotations, parent.shifts, fit.centre[None])[:, 0]
+    if linked is not None:
+        centre = np.where(np.isfinite(linked.world), linked.world, centre)
     with_joint = np.concatenate([own, centre[:, None]], axis=1)
     if solid is None:
         found = measure_shape(with_joint, outlier, min_spread)
@@ -131,6 +148,7 @@ def _measure_limb(
     shape, noise, _ = found
     body = Body(joint.child, joint.parent, labels, shape[:-1], noise[:-1], shape[-1])
     body.centre_noise = float(noise[-1])
+    body.own_pose = solid is not None
     carried = (Neighbour(_known(body.centre), centre, body.centre_noise),)
     poses = fit_poses(body, own, carried, min_spread)
     body.rotations, body.shifts = poses.rotations, poses.shifts

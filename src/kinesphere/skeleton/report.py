@@ -6,7 +6,7 @@ from kinesphere.data import Array, Joint, Limb, Observability, PoseFlag
 from kinesphere.geometry.range_of_motion import range_of_motion, spread_sample
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import unit
-from kinesphere.skeleton.chain import MeasuredJoint
+from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.poses import Poses
 from kinesphere.skeleton.settings import SkeletonSettings
 

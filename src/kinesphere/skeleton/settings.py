@@ -78,6 +78,11 @@ class SkeletonSettings:
         low=0.0,
         high=10.0,
     )
+    link_limbs: bool = setting(
+        True,
+        "fit limbs without a pose of their own together with the limbs on either side, where no "
+        "landmark tells their joints",
+    )
     adopt_markers: bool = setting(
         True, "let markers the model does not know join the limb they are rigid with"
     )

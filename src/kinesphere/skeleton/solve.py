@@ -8,7 +8,7 @@ from kinesphere.data import Array, Codes, PoseFlag
 from kinesphere.geometry.rigid import out_of_frame
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import unit
-from kinesphere.skeleton.chain import MeasuredJoint
+from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud, next_normals
 from kinesphere.skeleton.poses import BLOCK, Neighbour, Poses, aim, bridge, fit_poses
 from kinesphere.skeleton.settings import SkeletonSettings

@@ -1,0 +1,241 @@
+"""Bodies that hang together at joints, fitted to their markers all at once.
+
+Bundle adjustment: shapes, joint centres and every frame's poses are unknowns together, so that a
+body of two markers between two others takes its pose from the joints at both its ends.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.geometry.rotations import hat, rotation_exp
+from kinesphere.geometry.vectors import is_seen, lengths
+
+Array = NDArray[np.float64]
+
+SETTLED = 1e-5
+"""m, step of shapes and centres that ends the fit."""
+LONGEST = 0.05
+"""m, longest step of them."""
+WIDEST = 0.3
+"""rad, widest turn of a body in one step."""
+FLOOR = 1e-5
+"""m, least scale of the residuals."""
+LOOSE = 1e-9
+"""Share of a frame's information that keeps its pose solvable where a turn is open."""
+ROUNDING = 1e-10
+"""Share of the largest eigenvalue, unknowns made alike, below which nothing is told."""
+_HALF_NORMAL = 1.538  # median length of a standard normal vector in space
+
+
+class Linkage(NamedTuple):
+    """Bodies in a tree, parents first; each but the first hangs from its parent at its origin."""
+
+    parents: tuple[int, ...]
+    """Index of each body's parent; −1 for the first."""
+    shapes: tuple[Array, ...]
+    """Of each body (n_markers, 3) m; from the joint towards the parent, but for the first."""
+    centres: Array
+    """(n_bodies, 3) m, where each hangs, in its parent; the first row says nothing."""
+    rotations: Array
+    """(n_frames, n_bodies, 3, 3) ``world_from_body``."""
+    origin: Array
+    """(n_frames, 3) m, of the first body."""
+
+    @property
+    def origins(self) -> Array:
+        """(n_frames, n_bodies, 3) m, of every body: its joint towards the parent."""
+        at = np.empty(self.rotations.shape[:3])
+        at[:, 0] = self.origin
+        for body, parent in enumerate(self.parents[1:], start=1):
+            at[:, body] = at[:, parent] + self.rotations[:, parent] @ self.centres[body]
+        return at
+
+
+class LinkageFit(NamedTuple):
+    """A linkage that fits its markers, and how well they know its joints."""
+
+    linkage: Linkage
+    scale: float
+    """m, robust standard deviation of a marker in each direction."""
+    information: Array
+    """(n_bodies, 3, 3) 1/m² of each centre, everything else unknown as well."""
+
+
+class _Equations(NamedTuple):
+    """Linear in the unknowns that all frames share, poses solved out."""
+
+    told: Array
+    score: Array
+    follow: Array
+    """(n_frames, n_pose, n_shared) and, below, how poses follow a step of what is shared."""
+    own: Array
+    """(n_frames, n_pose)."""
+
+
+def fit_linkage(
+    start: Linkage,
+    points: Array,
+    expected: Array,
+    prior: Array,
+    looks: float,
+    *,
+    rounds: int = 60,
+) -> LinkageFit:
+    """Fit shapes, joint centres and poses of linked bodies by maximum a posteriori.
+
+    Every marker's distance from where its body puts it has a soft-L1 loss; its scale is the
+    residuals' own, one for all markers, for with two markers on a body each would claim to be
+    exact in turn. The first body's shape stays as it is. Poses are solved out frame by frame, as
+    structure is in bundle adjustment [1]_.
+
+    Parameters
+    ----------
+    start
+        Where to begin.
+    points : (n_frames, n_markers, 3) m
+        Markers in the world, body by body; NaN where not seen.
+    expected : (n_bodies, 3) m
+        Expected centres in their parents, as those are at the start; the first row says nothing.
+    prior : (n_bodies,) 1/m²
+        How firmly each is expected there, in every direction.
+    looks
+        How many independent looks at the joints all the frames make.
+    rounds
+        Most steps.
+
+    References
+    ----------
+    .. [1] Triggs et al. (2000), Bundle adjustment: a modern synthesis, LNCS 1883, 298-372, section
+       6.1, doi:10.1007/3-540-44480-7_21.
+    """
+    linkage, seen = start, is_seen(points)
+    n_shared = 3 * sum(len(s) for s in start.shapes[1:]) + 3 * (len(start.parents) - 1)
+    stiff = np.repeat(np.append(np.zeros(n_shared // 3 - len(prior) + 1), prior[1:]), 3)
+    for _ in range(rounds):
+        off, scale = _misfit(linkage, points, seen)
+        size = lengths(off) / scale
+        weights = seen / np.sqrt(1 + (size / 2) ** 2) / scale**2 * (looks / len(points))
+        equations = _equations(linkage, off, weights)
+        told = equations.told + np.diag(stiff) + _still(linkage)
+        strays = np.zeros(n_shared)
+        strays[-3 * (len(prior) - 1) :] = (linkage.centres[1:] - expected[1:]).ravel()
+        step = -_inverse(told) @ (equations.score + stiff * strays)
+        length = float(np.linalg.norm(step))
+        step *= min(1.0, LONGEST / max(length, 1e-12))
+        linkage = _moved(linkage, step, -(equations.own + equations.follow @ step))
+        if length < SETTLED:
+            break
+    known = equations.told + _still(linkage)
+    covariance = _inverse(known + np.diag(stiff))
+    first = n_shared - 3 * (len(prior) - 1)
+    blocks = [np.zeros((3, 3))]
+    for body in range(len(prior) - 1):
+        at = slice(first + 3 * body, first + 3 * body + 3)
+        told_here = np.linalg.pinv(covariance[at, at], hermitian=True) - np.diag(stiff[at])
+        values, vectors = np.linalg.eigh(told_here)
+        blocks.append((vectors * np.maximum(values, 0.0)) @ vectors.T)
+    return LinkageFit(linkage, scale, np.array(blocks))
+
+
+def linkage_cost(linkage: Linkage, points: Array, scale: float) -> float:
+    """Return the soft-L1 loss of a linkage's markers, in units of ``scale``, mean of a sighting."""
+    seen = is_seen(points)
+    size = lengths(_misfit(linkage, points, seen)[0])[seen] / scale
+    return float(np.mean(4 * (np.sqrt(1 + (size / 2) ** 2) - 1)))
+
+
+def _misfit(linkage: Linkage, points: Array, seen: NDArray[np.bool_]) -> tuple[Array, float]:
+    """Return residuals (n_frames, n_markers, 3) m, 0 where unseen, and their robust scale in m."""
+    origins = linkage.origins
+    placed = [
+        origins[:, body, None] + shape @ np.swapaxes(linkage.rotations[:, body], 1, 2)
+        for body, shape in enumerate(linkage.shapes)
+    ]
+    off = np.where(seen[..., None], np.concatenate(placed, axis=1) - points, 0.0)
+    free, taken = 3 * seen.sum() / len(points), 3 * len(linkage.parents) + 3
+    usual = float(np.median(lengths(off)[seen])) / _HALF_NORMAL
+    # the poses take up some of the coordinates: what is left looks smaller than the noise
+    return off, max(usual * float(np.sqrt(free / max(free - taken, 1.0))), FLOOR)
+
+
+def _equations(linkage: Linkage, off: Array, weights: Array) -> _Equations:
+    """Return the normal equations of what all frames share, every frame's poses solved out."""
+    n, n_bodies = linkage.rotations.shape[:2]
+    origins, n_markers = linkage.origins, off.shape[1]
+    n_shapes = 3 * sum(len(s) for s in linkage.shapes[1:])
+    by_pose = np.zeros((n, n_markers, 3, 3 * n_bodies + 3))
+    by_shared = np.zeros((n, n_markers, 3, n_shapes + 3 * (n_bodies - 1)))
+    first = 0
+    for body, shape in enumerate(linkage.shapes):
+        rows = slice(first, first + len(shape))
+        arm = shape @ np.swapaxes(linkage.rotations[:, body], 1, 2)
+        by_pose[:, rows, :, -3:] = np.eye(3)
+        by_pose[:, rows, :, 3 * body : 3 * body + 3] = -hat(arm)
+        if body:
+            for m in range(first, first + len(shape)):
+                at = 3 * (m - len(linkage.shapes[0]))
+                by_shared[:, m, :, at : at + 3] = linkage.rotations[:, body]
+        child = body
+        while (parent := linkage.parents[child]) >= 0:
+            arm = origins[:, child] - origins[:, parent]
+            by_pose[:, rows, :, 3 * parent : 3 * parent + 3] = -hat(arm)[:, None]
+            at = n_shapes + 3 * (child - 1)
+            by_shared[:, rows, :, at : at + 3] = linkage.rotations[:, parent, None]
+            child = parent
+        first += len(shape)
+    root = np.sqrt(weights)[..., None]
+    residual = (off * root).reshape(n, -1, 1)
+    shared = (by_shared * root[..., None]).reshape(n, 3 * n_markers, -1)
+    pose = np.swapaxes((by_pose * root[..., None]).reshape(n, 3 * n_markers, -1), 1, 2)
+    square = pose @ np.swapaxes(pose, 1, 2)
+    square += LOOSE * np.trace(square, axis1=1, axis2=2)[:, None, None] * np.eye(square.shape[1])
+    right = np.concatenate([shared, residual], axis=2)
+    cross = pose @ right
+    follow = np.linalg.solve(square, cross)
+    flat = shared.reshape(-1, shared.shape[2])
+    total = flat.T @ right.reshape(-1, right.shape[2])
+    total -= np.tensordot(cross[..., :-1], follow, ((0, 1), (0, 1)))
+    return _Equations(total[:, :-1], total[:, -1], follow[..., :-1], follow[..., -1])
+
+
+def _still(linkage: Linkage) -> Array:
+    """Return what keeps bodies from turning in their own frames, which no marker tells."""
+    n_shapes = 3 * sum(len(s) for s in linkage.shapes[1:])
+    n_shared = n_shapes + 3 * (len(linkage.parents) - 1)
+    total, first = np.zeros((n_shared, n_shared)), 0
+    for shape in linkage.shapes[1:]:
+        turn = np.zeros((3, n_shared))
+        size = float(np.sum(shape**2))
+        turn[:, first : first + 3 * len(shape)] = np.concatenate(list(hat(shape)), axis=1)
+        total += turn.T @ turn / max(size, 1e-12) * 1e8  # beside it a marker known to 0.1 mm
+        first += 3 * len(shape)
+    return total
+
+
+def _inverse(matrix: Array) -> Array:
+    """Return the inverse of a symmetric matrix whose unknowns may differ in size by far."""
+    sizes = 1 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    inner = np.linalg.pinv(sizes[:, None] * matrix * sizes, rcond=ROUNDING, hermitian=True)
+    inverse: Array = sizes[:, None] * inner * sizes
+    return inverse
+
+
+def _moved(linkage: Linkage, step: Array, poses: Array) -> Linkage:
+    """Return the linkage with what is shared and every pose moved by a step."""
+    shapes, first = [linkage.shapes[0]], 0
+    for shape in linkage.shapes[1:]:
+        shapes.append(shape + step[first : first + shape.size].reshape(-1, 3))
+        first += shape.size
+    centres = linkage.centres.copy()
+    centres[1:] += step[first:].reshape(-1, 3)
+    turns = poses[:, :-3].reshape(len(poses), -1, 3)
+    turns *= np.minimum(1.0, WIDEST / np.maximum(lengths(turns), 1e-12))[..., None]
+    rotations = rotation_exp(turns.reshape(-1, 3)).reshape(linkage.rotations.shape)
+    return linkage._replace(
+        shapes=tuple(shapes),
+        centres=centres,
+        rotations=rotations @ linkage.rotations,
+        origin=linkage.origin + poses[:, -3:],
+    )

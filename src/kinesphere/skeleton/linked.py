@@ -1,0 +1,156 @@
+"""Limbs without a pose of their own, fitted together with the limbs on either side."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.geometry.centres import CentreFit, with_expectation
+from kinesphere.geometry.linkage import Linkage, LinkageFit, fit_linkage
+from kinesphere.geometry.rigid import into_frame
+from kinesphere.geometry.rotations import mean_rotation
+from kinesphere.geometry.vectors import is_seen
+from kinesphere.skeleton.averages import median_seen
+from kinesphere.skeleton.body import Body
+from kinesphere.skeleton.landmarks import BETWEEN, STEADY
+from kinesphere.skeleton.measured import MeasuredJoint
+from kinesphere.skeleton.neighbours import cloud
+from kinesphere.skeleton.settings import SkeletonSettings
+from kinesphere.skeleton.tree import Tree
+
+FEW = 30
+"""Frames that show every limb of a group below which it stays as it was measured."""
+
+
+class LinkedJoint(NamedTuple):
+    """A joint that a group of limbs told together."""
+
+    world: Array
+    """(n_sample, 3) m; NaN where a limb of the group is unseen."""
+    frames: Array
+    """(n_sample, 3, 3) the parent's poses as the group has them; NaN alike."""
+    information: Array
+    """(3, 3) 1/m² in the parent as the group has it."""
+    noise: float
+    """m."""
+    n_poses: int
+
+    def seen_from(self, parent: Body, spread: float) -> CentreFit | None:
+        """Return the joint in its parent, however that was measured; None where it never shows."""
+        local = into_frame(parent.rotations, parent.shifts, self.world[:, None])[:, 0]
+        turns = np.swapaxes(parent.rotations, 1, 2) @ self.frames
+        known = is_seen(local) & np.isfinite(turns).all(axis=(1, 2))
+        if not known.any():
+            return None
+        turn = mean_rotation(turns[known])
+        return with_expectation(
+            median_seen(local[known]),
+            turn @ self.information @ turn.T,
+            spread,
+            self.noise,
+            self.n_poses,
+        )
+
+
+def fit_linked(
+    tree: Tree,
+    bodies: dict[str, Body],
+    joints: dict[str, MeasuredJoint],
+    sample: dict[str, Array],
+    settings: SkeletonSettings,
+) -> dict[str, LinkedJoint]:
+    """Fit every group of limbs that hang together by limbs without a pose of their own.
+
+    A limb of two markers gets its pose from the joint towards its parent, and hands that joint's
+    error on to the next one; a limb whose markers and joint lie on a line cannot even say where
+    the next joint is. All of it together can: the next limb's markers tell how this one turns.
+
+    Only joints that no landmark of a model tells: those are placed by people's measures.
+
+    Returns
+    -------
+    child limb → LinkedJoint
+    """
+    linked = {}
+    for group in find_groups(tree, bodies):
+        if all(joints[limb].source in (BETWEEN, STEADY) for limb in group[1:]):
+            linked |= _fit_group(group, bodies, joints, sample, settings)
+    return linked
+
+
+def find_groups(tree: Tree, bodies: dict[str, Body]) -> list[tuple[str, ...]]:
+    """Return limbs to be fitted together, parents first, the first with a pose of its own."""
+    groups: dict[str, list[str]] = {}
+    within: dict[str, str] = {}  # limb without a pose of its own → the one its group began with
+    for limb in tree.limbs[1:]:
+        parent = tree.parent(limb)
+        assert parent is not None
+        if parent in within:
+            groups[within[parent]].append(limb)
+            if not bodies[limb].own_pose:
+                within[limb] = within[parent]
+        elif not bodies[limb].own_pose:
+            within[limb] = limb
+            groups[limb] = [parent, limb]
+    return [tuple(group) for group in groups.values()]
+
+
+def _fit_group(
+    group: tuple[str, ...],
+    bodies: dict[str, Body],
+    joints: dict[str, MeasuredJoint],
+    sample: dict[str, Array],
+    settings: SkeletonSettings,
+) -> dict[str, LinkedJoint]:
+    """Fit one group; nothing where too little of it is seen together."""
+    limbs = [bodies[limb] for limb in group]
+    origins = [np.zeros(3) if i == 0 else _centre(body) for i, body in enumerate(limbs)]
+    parents = [-1, *(group.index(str(body.parent)) for body in limbs[1:])]
+    measured = [joints[limb] for limb in group[1:]]
+    rotations = np.stack([body.rotations for body in limbs], axis=1)
+    known = np.isfinite(rotations).all(axis=(1, 2, 3)) & is_seen(limbs[0].shifts)
+    kept = [is_seen(body.shape) for body in limbs]
+    if known.sum() < FEW or not all(k.any() for k in kept):
+        return {}
+    hung = np.array([origins[p] for p in parents[1:]])
+    start = Linkage(
+        tuple(parents),
+        tuple(body.shape[k] - origin for body, k, origin in zip(limbs, kept, origins, strict=True)),
+        np.vstack([np.zeros(3), np.array([j.fit.centre for j in measured]) - hung]),
+        rotations[known],
+        limbs[0].shifts[known],
+    )
+    points = np.concatenate(
+        [cloud(body.labels, sample)[known][:, k] for body, k in zip(limbs, kept, strict=True)],
+        axis=1,
+    )
+    n_poses = [j.fit.n_poses for j in measured]
+    fit = fit_linkage(
+        start,
+        points,
+        np.vstack([np.zeros(3), np.array([j.expected for j in measured]) - hung]),
+        np.array([0.0, *(1 / j.spread**2 for j in measured)]),
+        float(np.mean(n_poses)) / settings.soft_tissue**2,
+    )
+    if not np.isfinite(fit.linkage.centres).all():
+        return {}
+    return _joints(group, fit, known, n_poses)
+
+
+def _joints(
+    group: tuple[str, ...], fit: LinkageFit, known: Array, n_poses: list[int]
+) -> dict[str, LinkedJoint]:
+    linked = {}
+    origins = fit.linkage.origins
+    for i, limb in enumerate(group[1:], start=1):
+        world = np.full((len(known), 3), np.nan)
+        frames = np.full((len(known), 3, 3), np.nan)
+        world[known] = origins[:, i]
+        frames[known] = fit.linkage.rotations[:, fit.linkage.parents[i]]
+        linked[limb] = LinkedJoint(world, frames, fit.information[i], fit.scale, n_poses[i - 1])
+    return linked
+
+
+def _centre(body: Body) -> Array:
+    assert body.centre is not None  # only the root of all has none
+    return body.centre
