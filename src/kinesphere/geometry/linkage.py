@@ -4,6 +4,7 @@ Bundle adjustment: shapes, joint centres and every frame's poses are unknowns to
 body of two markers between two others takes its pose from the joints at both its ends.
 """
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,10 @@ Array = NDArray[np.float64]
 
 SETTLED = 1e-5
 """m, step of shapes and centres that ends the fit."""
+STILL = 1e-3
+"""rad, turn that ends the fit of a pose."""
+NEAR = 0.3
+"""rad, how far bodies may have turned since the poses that a fit of poses begins with."""
 LONGEST = 0.05
 """m, longest step of them."""
 WIDEST = 0.3
@@ -139,11 +144,44 @@ def fit_linkage(
     return LinkageFit(linkage, scale, np.array(blocks))
 
 
-def linkage_cost(linkage: Linkage, points: Array, scale: float) -> float:
-    """Return the soft-L1 loss of a linkage's markers, in units of ``scale``, mean of a sighting."""
+def pose_linkage(start: Linkage, points: Array, *, rounds: int = 20) -> tuple[Linkage, Array]:
+    """Fit the poses of linked bodies to their markers; shapes, centres, the first body stay.
+
+    Residuals have a soft-L1 loss. Every body is expected where it starts, ± `NEAR`: where markers
+    hardly tell a turn it stays, and does not leap from one side of a fold to the other.
+
+    Parameters
+    ----------
+    start
+        With poses to begin with.
+    points : (n_frames, n_markers, 3) m
+        Markers of all bodies but the first; none is NaN.
+
+    Returns
+    -------
+    linkage : Linkage
+    settled : (n_frames,) of bool
+    """
+    held = start._replace(shapes=(np.empty((0, 3)), *start.shapes[1:]))
     seen = is_seen(points)
-    size = lengths(_misfit(linkage, points, seen)[0])[seen] / scale
-    return float(np.mean(4 * (np.sqrt(1 + (size / 2) ** 2) - 1)))
+    settled = np.zeros(len(points), dtype=np.bool_)
+    turned = np.zeros((len(points), 3 * len(start.parents) - 3))
+    for _ in range(rounds):
+        off, scale = _misfit(held, points, seen)
+        root = (1 + (lengths(off) / scale / 2) ** 2) ** -0.25
+        by_pose = _by_pose(held, points.shape[1])[..., 3:-3]
+        pose = (by_pose * root[..., None, None]).reshape(len(points), -1, by_pose.shape[3])
+        pull = np.swapaxes(pose, 1, 2) @ (off * root[..., None]).reshape(len(points), -1, 1)
+        firm = (scale / NEAR) ** 2
+        square = _square(pose) + firm * np.eye(by_pose.shape[3])
+        step = -np.linalg.solve(square, pull + firm * turned[..., None])[..., 0]
+        step *= np.minimum(1.0, WIDEST / np.maximum(np.abs(step).max(axis=1), 1e-12))[:, None]
+        turned += step
+        held = _moved(held, np.zeros(0), np.pad(step, ((0, 0), (3, 3))))
+        settled = np.abs(step).max(axis=1) < STILL
+        if settled.all():
+            break
+    return held._replace(shapes=start.shapes), settled
 
 
 def _misfit(linkage: Linkage, points: Array, seen: NDArray[np.bool_]) -> tuple[Array, float]:
@@ -162,42 +200,69 @@ def _misfit(linkage: Linkage, points: Array, seen: NDArray[np.bool_]) -> tuple[A
 
 def _equations(linkage: Linkage, off: Array, weights: Array) -> _Equations:
     """Return the normal equations of what all frames share, every frame's poses solved out."""
-    n, n_bodies = linkage.rotations.shape[:2]
-    origins, n_markers = linkage.origins, off.shape[1]
-    n_shapes = 3 * sum(len(s) for s in linkage.shapes[1:])
-    by_pose = np.zeros((n, n_markers, 3, 3 * n_bodies + 3))
-    by_shared = np.zeros((n, n_markers, 3, n_shapes + 3 * (n_bodies - 1)))
-    first = 0
-    for body, shape in enumerate(linkage.shapes):
-        rows = slice(first, first + len(shape))
-        arm = shape @ np.swapaxes(linkage.rotations[:, body], 1, 2)
-        by_pose[:, rows, :, -3:] = np.eye(3)
-        by_pose[:, rows, :, 3 * body : 3 * body + 3] = -hat(arm)
-        if body:
-            for m in range(first, first + len(shape)):
-                at = 3 * (m - len(linkage.shapes[0]))
-                by_shared[:, m, :, at : at + 3] = linkage.rotations[:, body]
-        child = body
-        while (parent := linkage.parents[child]) >= 0:
-            arm = origins[:, child] - origins[:, parent]
-            by_pose[:, rows, :, 3 * parent : 3 * parent + 3] = -hat(arm)[:, None]
-            at = n_shapes + 3 * (child - 1)
-            by_shared[:, rows, :, at : at + 3] = linkage.rotations[:, parent, None]
-            child = parent
-        first += len(shape)
+    n, n_markers = off.shape[:2]
     root = np.sqrt(weights)[..., None]
     residual = (off * root).reshape(n, -1, 1)
-    shared = (by_shared * root[..., None]).reshape(n, 3 * n_markers, -1)
-    pose = np.swapaxes((by_pose * root[..., None]).reshape(n, 3 * n_markers, -1), 1, 2)
-    square = pose @ np.swapaxes(pose, 1, 2)
-    square += LOOSE * np.trace(square, axis1=1, axis2=2)[:, None, None] * np.eye(square.shape[1])
+    shared = (_by_shared(linkage, n_markers) * root[..., None]).reshape(n, 3 * n_markers, -1)
+    pose = (_by_pose(linkage, n_markers) * root[..., None]).reshape(n, 3 * n_markers, -1)
     right = np.concatenate([shared, residual], axis=2)
-    cross = pose @ right
-    follow = np.linalg.solve(square, cross)
+    cross = np.swapaxes(pose, 1, 2) @ right
+    follow = np.linalg.solve(_square(pose), cross)
     flat = shared.reshape(-1, shared.shape[2])
     total = flat.T @ right.reshape(-1, right.shape[2])
     total -= np.tensordot(cross[..., :-1], follow, ((0, 1), (0, 1)))
     return _Equations(total[:, :-1], total[:, -1], follow[..., :-1], follow[..., -1])
+
+
+def _by_pose(linkage: Linkage, n_markers: int) -> Array:
+    """Return how markers follow a turn of each body and a shift of the first, (n, m, 3, k)."""
+    n, n_bodies = linkage.rotations.shape[:2]
+    origins, first = linkage.origins, 0
+    by_pose = np.zeros((n, n_markers, 3, 3 * n_bodies + 3))
+    by_pose[..., -3:] = np.eye(3)
+    for body, shape in enumerate(linkage.shapes):
+        rows = slice(first, first + len(shape))
+        arm = shape @ np.swapaxes(linkage.rotations[:, body], 1, 2)
+        by_pose[:, rows, :, 3 * body : 3 * body + 3] = -hat(arm)
+        for parent, child in _way_up(linkage, body):
+            arm = origins[:, child] - origins[:, parent]
+            by_pose[:, rows, :, 3 * parent : 3 * parent + 3] = -hat(arm)[:, None]
+        first += len(shape)
+    return by_pose
+
+
+def _by_shared(linkage: Linkage, n_markers: int) -> Array:
+    """Return how markers follow shapes, body by body but for the first, and centres."""
+    n, n_bodies = linkage.rotations.shape[:2]
+    fixed, first = len(linkage.shapes[0]), 0
+    n_shapes = 3 * (n_markers - fixed)
+    by_shared = np.zeros((n, n_markers, 3, n_shapes + 3 * (n_bodies - 1)))
+    for body, shape in enumerate(linkage.shapes):
+        rows = slice(first, first + len(shape))
+        for m in range(first, first + len(shape)) if body else ():
+            at = 3 * (m - fixed)
+            by_shared[:, m, :, at : at + 3] = linkage.rotations[:, body]
+        for parent, child in _way_up(linkage, body):
+            at = n_shapes + 3 * (child - 1)
+            by_shared[:, rows, :, at : at + 3] = linkage.rotations[:, parent, None]
+        first += len(shape)
+    return by_shared
+
+
+def _way_up(linkage: Linkage, body: int) -> Iterator[tuple[int, int]]:
+    """Yield every body above one, with the one that the way goes through."""
+    child = body
+    while (parent := linkage.parents[child]) >= 0:
+        yield parent, child
+        child = parent
+
+
+def _square(pose: Array) -> Array:
+    """Return every frame's normal matrix, solvable where a turn is open."""
+    square = np.swapaxes(pose, 1, 2) @ pose
+    least = LOOSE * np.trace(square, axis1=1, axis2=2)
+    square += least[:, None, None] * np.eye(square.shape[1])
+    return square
 
 
 def _still(linkage: Linkage) -> Array:
@@ -223,13 +288,14 @@ def _inverse(matrix: Array) -> Array:
 
 
 def _moved(linkage: Linkage, step: Array, poses: Array) -> Linkage:
-    """Return the linkage with what is shared and every pose moved by a step."""
-    shapes, first = [linkage.shapes[0]], 0
-    for shape in linkage.shapes[1:]:
-        shapes.append(shape + step[first : first + shape.size].reshape(-1, 3))
-        first += shape.size
-    centres = linkage.centres.copy()
-    centres[1:] += step[first:].reshape(-1, 3)
+    """Return the linkage with what is shared, unless that is empty, and every pose moved."""
+    shapes, centres = list(linkage.shapes), linkage.centres.copy()
+    if len(step):
+        first = 0
+        for body, shape in enumerate(linkage.shapes[1:], start=1):
+            shapes[body] = shape + step[first : first + shape.size].reshape(-1, 3)
+            first += shape.size
+        centres[1:] += step[first:].reshape(-1, 3)
     turns = poses[:, :-3].reshape(len(poses), -1, 3)
     turns *= np.minimum(1.0, WIDEST / np.maximum(lengths(turns), 1e-12))[..., None]
     rotations = rotation_exp(turns.reshape(-1, 3)).reshape(linkage.rotations.shape)

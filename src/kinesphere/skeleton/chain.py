@@ -66,8 +66,8 @@ def _measure_outward(
     find_axes(bodies[tree.root], None, tree, model, sample, settings)
     joints: dict[str, MeasuredJoint] = {}
     for joint in tree.joints:
-        parent, told = bodies[joint.parent], linked.get(joint.child)
-        body, measured = _measure_limb(joint, parent, tree, sample, settings, told)
+        parent = bodies[joint.parent]
+        body, measured = _measure_limb(joint, parent, tree, sample, settings, linked)
         bodies[joint.child], joints[joint.child] = body, measured
         find_axes(body, parent, tree, model, sample, settings)
     return bodies, joints
@@ -102,7 +102,7 @@ def _measure_limb(
     tree: Tree,
     sample: dict[str, Array],
     settings: SkeletonSettings,
-    linked: LinkedJoint | None,
+    linked: Mapping[str, LinkedJoint],
 ) -> tuple[Body, MeasuredJoint]:
     labels = tree.markers[joint.child]
     own = cloud(labels, sample)
@@ -118,9 +118,9 @@ def _measure_limb(
         parent.pose_covariance,
         None if solid is None else _turning(solid, parent, own, cloud(parent.labels, sample)),
     )
-    fit = None if linked is None else linked.seen_from(parent, spread)
+    told = linked.get(joint.child)
+    fit = None if told is None else told.seen_from(parent, spread)
     if fit is None:
-        linked = None
         fit = fit_centre(
             view,
             expected,
@@ -131,10 +131,12 @@ def _measure_limb(
         )
     measured = MeasuredJoint(joint, fit, expected, spread, source)
     centre = out_of_frame(parent.rotations, parent.shifts, fit.centre[None])[:, 0]
-    if linked is not None:
-        centre = np.where(np.isfinite(linked.world), linked.world, centre)
+    if told is not None:
+        centre = np.where(np.isfinite(told.world), told.world, centre)
     with_joint = np.concatenate([own, centre[:, None]], axis=1)
+    beyond = [linked[limb].world for limb in tree.children(joint.child) if limb in linked]
     if solid is None:
+        with_joint = np.concatenate([with_joint, *(at[:, None] for at in beyond)], axis=1)
         found = measure_shape(with_joint, outlier, min_spread)
     else:
         found = measure_shape(
@@ -146,11 +148,13 @@ def _measure_limb(
     if found is None:
         return measure_line(joint, parent, tree, sample, centre, settings), measured
     shape, noise, _ = found
-    body = Body(joint.child, joint.parent, labels, shape[:-1], noise[:-1], shape[-1])
-    body.centre_noise = float(noise[-1])
-    body.own_pose = solid is not None
-    carried = (Neighbour(_known(body.centre), centre, body.centre_noise),)
-    poses = fit_poses(body, own, carried, min_spread)
+    n = len(labels)
+    body = Body(joint.child, joint.parent, labels, shape[:n], noise[:n], shape[n])
+    body.centre_noise = float(noise[n])
+    body.own_pose, body.linked = solid is not None, solid is None and told is not None
+    seen = [centre, *beyond] if solid is None else [centre]
+    carried = zip(shape[n:], seen, noise[n:], strict=True)
+    poses = fit_poses(body, own, tuple(Neighbour(*one) for one in carried), min_spread)
     body.rotations, body.shifts = poses.rotations, poses.shifts
     relative = np.swapaxes(parent.rotations, 1, 2) @ body.rotations
     if np.isfinite(relative).all(axis=(1, 2)).any():
@@ -195,8 +199,3 @@ def joint_noise(solid: tuple[Array, Array, RigidFit], centre: Array, least: floa
     strays = float(robust_rms(np.linalg.norm(local - usual, axis=2))[0])
     shaky = point_covariance(pose_covariance(shape, np.hypot(noise, NOISE)), usual)
     return float(np.sqrt(max(strays**2 - np.trace(shaky) / 3, least**2)))
-
-
-def _known(point: Array | None) -> Array:
-    assert point is not None
-    return point

@@ -6,15 +6,15 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.geometry.centres import CentreFit, with_expectation
-from kinesphere.geometry.linkage import Linkage, LinkageFit, fit_linkage
+from kinesphere.geometry.linkage import LinkageFit, fit_linkage
 from kinesphere.geometry.rigid import into_frame
 from kinesphere.geometry.rotations import mean_rotation
 from kinesphere.geometry.vectors import is_seen
 from kinesphere.skeleton.averages import median_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
+from kinesphere.skeleton.linked_poses import linkage_of, markers_of
 from kinesphere.skeleton.measured import MeasuredJoint
-from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree
 
@@ -104,31 +104,18 @@ def _fit_group(
 ) -> dict[str, LinkedJoint]:
     """Fit one group; nothing where too little of it is seen together."""
     limbs = [bodies[limb] for limb in group]
-    origins = [np.zeros(3) if i == 0 else _centre(body) for i, body in enumerate(limbs)]
-    parents = [-1, *(group.index(str(body.parent)) for body in limbs[1:])]
     measured = [joints[limb] for limb in group[1:]]
     rotations = np.stack([body.rotations for body in limbs], axis=1)
     known = np.isfinite(rotations).all(axis=(1, 2, 3)) & is_seen(limbs[0].shifts)
-    kept = [is_seen(body.shape) for body in limbs]
-    if known.sum() < FEW or not all(k.any() for k in kept):
+    if known.sum() < FEW or not all(is_seen(body.shape).any() for body in limbs):
         return {}
-    hung = np.array([origins[p] for p in parents[1:]])
-    start = Linkage(
-        tuple(parents),
-        tuple(body.shape[k] - origin for body, k, origin in zip(limbs, kept, origins, strict=True)),
-        np.vstack([np.zeros(3), np.array([j.fit.centre for j in measured]) - hung]),
-        rotations[known],
-        limbs[0].shifts[known],
-    )
-    points = np.concatenate(
-        [cloud(body.labels, sample)[known][:, k] for body, k in zip(limbs, kept, strict=True)],
-        axis=1,
-    )
+    start = linkage_of(group, bodies, joints, rotations[known], limbs[0].shifts[known])
+    leads = [j.expected - j.fit.centre for j in measured]
     n_poses = [j.fit.n_poses for j in measured]
     fit = fit_linkage(
         start,
-        points,
-        np.vstack([np.zeros(3), np.array([j.expected for j in measured]) - hung]),
+        markers_of(group, bodies, sample)[known],
+        start.centres + np.vstack([np.zeros(3), *leads]),
         np.array([0.0, *(1 / j.spread**2 for j in measured)]),
         float(np.mean(n_poses)) / settings.soft_tissue**2,
     )
@@ -149,8 +136,3 @@ def _joints(
         frames[known] = fit.linkage.rotations[:, fit.linkage.parents[i]]
         linked[limb] = LinkedJoint(world, frames, fit.information[i], fit.scale, n_poses[i - 1])
     return linked
-
-
-def _centre(body: Body) -> Array:
-    assert body.centre is not None  # only the root of all has none
-    return body.centre
