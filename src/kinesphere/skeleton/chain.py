@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from kinesphere.data import Array, JointModel, TopologicalModel
+from kinesphere.data import Array, JointModel, PoseFlag, TopologicalModel
 from kinesphere.errors import DegenerateMotion
 from kinesphere.geometry.centres import Turning, View, fit_centre
 from kinesphere.geometry.joint_turns import joint_modes
@@ -155,6 +155,8 @@ def _measure_limb(
     seen = [centre, *beyond] if solid is None else [centre]
     carried = zip(shape[n:], seen, noise[n:], strict=True)
     poses = fit_poses(body, own, tuple(Neighbour(*one) for one in carried), min_spread)
+    if (poses.flags == PoseFlag.UNSEEN).all():  # off a line by so little that weights decide
+        return measure_line(joint, parent, tree, sample, centre, settings), measured
     body.rotations, body.shifts = poses.rotations, poses.shifts
     relative = np.swapaxes(parent.rotations, 1, 2) @ body.rotations
     if np.isfinite(relative).all(axis=(1, 2)).any():

@@ -18,6 +18,8 @@ from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree
 
+FEWEST, THREE = 2, 3
+"""Markers that a limb between others and a limb beyond it have at least."""
 FEW = 30
 """Frames that show every limb of a group below which it stays as it was measured."""
 
@@ -79,20 +81,22 @@ def fit_linked(
 
 
 def find_groups(tree: Tree, bodies: dict[str, Body]) -> list[tuple[str, ...]]:
-    """Return limbs to be fitted together, parents first, the first with a pose of its own."""
-    groups: dict[str, list[str]] = {}
-    within: dict[str, str] = {}  # limb without a pose of its own → the one its group began with
-    for limb in tree.limbs[1:]:
-        parent = tree.parent(limb)
-        assert parent is not None
-        if parent in within:
-            groups[within[parent]].append(limb)
-            if not bodies[limb].own_pose:
-                within[limb] = within[parent]
-        elif not bodies[limb].own_pose:
-            within[limb] = limb
-            groups[limb] = [parent, limb]
-    return [tuple(group) for group in groups.values()]
+    """Return limbs to be fitted together: one with a pose of its own, one without, those beyond.
+
+    Those beyond have three markers at least each: so many tell a pose but for what a line leaves
+    open, and that the joint tells. Limbs with fewer, one after another, know too little of each
+    other.
+    """
+    groups = []
+    for joint in tree.joints:
+        beyond = tree.children(joint.child)
+        between = bodies[joint.parent].own_pose and not bodies[joint.child].own_pose
+        enough = len(tree.markers[joint.child]) >= FEWEST and all(
+            len(tree.markers[limb]) >= THREE for limb in beyond
+        )
+        if between and enough and beyond:
+            groups.append((joint.parent, joint.child, *beyond))
+    return groups
 
 
 def _fit_group(
