@@ -7,19 +7,22 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.geometry.centres import CentreFit, with_expectation
 from kinesphere.geometry.linkage import LinkageFit, fit_linkage
+from kinesphere.geometry.range_of_motion import range_of_motion, spread_sample
 from kinesphere.geometry.rigid import into_frame
 from kinesphere.geometry.rotations import mean_rotation
 from kinesphere.geometry.vectors import is_seen
 from kinesphere.skeleton.averages import median_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
-from kinesphere.skeleton.linked_poses import linkage_of, markers_of
+from kinesphere.skeleton.linked_poses import linkage_of, markers_of, parents_in
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree
 
 FEWEST, THREE = 2, 3
 """Markers that a limb between others and a limb beyond it have at least."""
+STRAYED = 3.0
+"""Spreads off its expectation beyond which a centre says that the group tells nothing."""
 FEW = 30
 """Frames that show every limb of a group below which it stays as it was measured."""
 
@@ -113,19 +116,37 @@ def _fit_group(
     known = np.isfinite(rotations).all(axis=(1, 2, 3)) & is_seen(limbs[0].shifts)
     if known.sum() < FEW or not all(is_seen(body.shape).any() for body in limbs):
         return {}
+    moved = [
+        _moved(rotations[known], parent, child)
+        for child, parent in enumerate(parents_in(group, bodies)[1:], start=1)
+    ]
+    if min(moved) < np.deg2rad(settings.min_range_deg):
+        return {}  # skin is all that moves there
     start = linkage_of(group, bodies, joints, rotations[known], limbs[0].shifts[known])
-    leads = [j.expected - j.fit.centre for j in measured]
+    leads = np.array([j.expected - j.fit.centre for j in measured])
+    expected = start.centres + np.vstack([np.zeros(3), leads])
     n_poses = [j.fit.n_poses for j in measured]
     fit = fit_linkage(
         start,
         markers_of(group, bodies, sample)[known],
-        start.centres + np.vstack([np.zeros(3), *leads]),
+        expected,
         np.array([0.0, *(1 / j.spread**2 for j in measured)]),
         float(np.mean(n_poses)) / settings.soft_tissue**2,
     )
-    if not np.isfinite(fit.linkage.centres).all():
+    off = np.linalg.norm(fit.linkage.centres - expected, axis=1)[1:]
+    if not (off < STRAYED * np.array([j.spread for j in measured])).all():
+        return {}  # not finite, or where no joint of these limbs can be
+    # known in the second direction, too: a hinge is open along its axis
+    firm = np.linalg.eigvalsh(fit.information[1:])[:, 1]
+    if (firm < 1 / (settings.undetermined_mm * 1e-3) ** 2).any():
         return {}
     return _joints(group, fit, known, n_poses)
+
+
+def _moved(rotations: Array, parent: int, child: int) -> float:
+    """Return the range of motion of a joint in rad."""
+    relative = np.swapaxes(rotations[:, parent], 1, 2) @ rotations[:, child]
+    return range_of_motion(relative[spread_sample(len(relative))])
 
 
 def _joints(

@@ -13,6 +13,11 @@ from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.poses import BLOCK, Poses
 
 
+def parents_in(group: tuple[str, ...], bodies: dict[str, Body]) -> tuple[int, ...]:
+    """Return where in a group each limb's parent is; −1 for the first."""
+    return (-1, *(group.index(str(bodies[limb].parent)) for limb in group[1:]))
+
+
 def linkage_of(
     group: tuple[str, ...],
     bodies: dict[str, Body],
@@ -30,13 +35,13 @@ def linkage_of(
     origin : (n_frames, 3) m, of the first limb.
     """
     limbs = [bodies[limb] for limb in group]
-    parents = [-1, *(group.index(str(body.parent)) for body in limbs[1:])]
+    parents = parents_in(group, bodies)
     ends = [np.zeros(3), *(_centre(body) for body in limbs[1:])]
     hung = [
         joints[limb].fit.centre - ends[p] for limb, p in zip(group[1:], parents[1:], strict=True)
     ]
     return Linkage(
-        tuple(parents),
+        parents,
         tuple(body.shape[is_seen(body.shape)] - end for body, end in zip(limbs, ends, strict=True)),
         np.vstack([np.zeros(3), *hung]),
         rotations,

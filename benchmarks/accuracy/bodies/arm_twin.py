@@ -1,0 +1,82 @@
+"""What halves of the unlabelled arm can tell: the same motion and noise about known centres.
+
+The arm's own solution is made rigid: every limb where its pose puts it, hung at its joint exactly.
+What its markers stray is put back on: *turned*, every marker's by a rotation or mirror of its own
+that stays the same, so that it goes with the pose as skin does but leads elsewhere; or *shifted*,
+taken from another time of the same half besides, so that it goes with nothing. Neither is more than
+the arm's own, and what poses took up is missing.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from kinesphere.data import Motion, Recording, Skeleton
+
+DRAWS = 8
+WANTED = 3.0
+"""mm between halves, which the arm's bar asks for."""
+
+Fit = Callable[[Recording], Motion]
+Apart = Callable[[Skeleton, Skeleton], dict[str, float]]
+
+
+def twin_figures(recording: Recording, solved: Motion, fit: Fit, apart: Apart) -> list[dict]:
+    """Return, for both kinds of noise, what halves of twins tell of the worst joint, mm."""
+    true = solved.skeleton
+    columns = [recording.labels.index(m) for limb in true.limbs for m in limb.markers]
+    limbs = np.repeat(np.arange(len(true.limbs)), [len(limb.markers) for limb in true.limbs])
+    rigid = _rigid(solved)
+    turns = solved.rotations[:, limbs]
+    strays = np.einsum("nmji,nmj->nmi", turns, recording.markers[:, columns] - rigid)
+    middle = recording.n_frames // 2
+    rows = []
+    for kind in ("turned", "shifted"):
+        between, off = [], []
+        for seed in range(DRAWS):
+            rng = np.random.default_rng(seed)
+            put = np.stack([_put(strays[:, m], kind, middle, rng) for m in range(len(limbs))], 1)
+            markers = np.array(recording.markers)
+            markers[:, columns] = rigid + np.einsum("nmij,nmj->nmi", turns, put)
+            first, second = (
+                fit(replace(recording, markers=part)).skeleton
+                for part in (markers[:middle], markers[middle:])
+            )
+            between.append(max(apart(first, second).values()))
+            off += [max(apart(true, half).values()) for half in (first, second)]
+        rows.append(
+            {
+                "noise": kind,
+                "halves_mm": float(np.median(between)),
+                "best_mm": float(np.min(between)),
+                "within": int(np.sum(np.array(between) <= WANTED)),
+                "draws": DRAWS,
+                "error_mm": float(np.median(off)),
+            }
+        )
+    return rows
+
+
+def _rigid(solved: Motion) -> np.ndarray:
+    """Return the markers where rigid limbs have them that hang at their joints, limb by limb."""
+    true, at = solved.skeleton, {}
+    names = [limb.name for limb in true.limbs]
+    placed = []
+    for i, limb in enumerate(true.limbs):
+        turn, at[limb.name] = solved.rotations[:, i], solved.origins[:, i]
+        joint = next((j for j in true.joints if j.child == limb.name), None)
+        if joint is not None:
+            above = solved.rotations[:, names.index(joint.parent)]
+            centre = at[joint.parent] + above @ joint.centre_in_parent
+            at[limb.name] = centre - turn @ joint.centre_in_child
+        placed.append(at[limb.name][:, None] + limb.marker_positions @ np.swapaxes(turn, 1, 2))
+    return np.concatenate(placed, axis=1)
+
+
+def _put(stray: np.ndarray, kind: str, middle: int, rng: np.random.Generator) -> np.ndarray:
+    """Return one marker's strays as a twin has them, (n, 3) m."""
+    halves = [stray[:middle], stray[middle:]]
+    if kind == "shifted":
+        halves = [np.roll(h, rng.integers(len(h) // 8, len(h) * 7 // 8), axis=0) for h in halves]
+    return np.concatenate(halves) @ np.linalg.qr(rng.normal(size=(3, 3)))[0]
