@@ -6,12 +6,12 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.geometry.centres import CentreFit, with_expectation
-from kinesphere.geometry.linkage import LinkageFit, fit_linkage
+from kinesphere.geometry.linkage import Linkage, LinkageFit, fit_linkage
 from kinesphere.geometry.range_of_motion import range_of_motion, spread_sample
 from kinesphere.geometry.rigid import into_frame
 from kinesphere.geometry.rotations import mean_rotation
-from kinesphere.geometry.vectors import is_seen
-from kinesphere.skeleton.averages import median_seen
+from kinesphere.geometry.vectors import is_seen, lengths
+from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 from kinesphere.skeleton.linked_poses import linkage_of, markers_of, parents_in
@@ -23,6 +23,8 @@ FEWEST, THREE = 2, 3
 """Markers that a limb between others and a limb beyond it have at least."""
 STRAYED = 3.0
 """Spreads off its expectation beyond which a centre says that the group tells nothing."""
+WAYS = 41
+"""Places tried on a line."""
 FEW = 30
 """Frames that show every limb of a group below which it stays as it was measured."""
 
@@ -126,13 +128,19 @@ def _fit_group(
     leads = np.array([j.expected - j.fit.centre for j in measured])
     expected = start.centres + np.vstack([np.zeros(3), leads])
     n_poses = [j.fit.n_poses for j in measured]
-    fit = fit_linkage(
-        start,
-        markers_of(group, bodies, sample)[known],
-        expected,
-        np.array([0.0, *(1 / j.spread**2 for j in measured)]),
-        float(np.mean(n_poses)) / settings.soft_tissue**2,
-    )
+    points = markers_of(group, bodies, sample)[known]
+    fits = [
+        fit_linkage(
+            start._replace(centres=centres),
+            points,
+            expected,
+            np.array([0.0, *(1 / j.spread**2 for j in measured)]),
+            float(np.mean(n_poses)) / settings.soft_tissue**2,
+        )
+        # a limb on a line has put the next joint anywhere round it
+        for centres in _starts(group, start, expected, bodies, points)
+    ]
+    fit = min(fits, key=lambda one: one.scale)
     off = np.linalg.norm(fit.linkage.centres - expected, axis=1)[1:]
     if not (off < STRAYED * np.array([j.spread for j in measured])).all():
         return {}  # not finite, or where no joint of these limbs can be
@@ -141,6 +149,34 @@ def _fit_group(
     if (firm < 1 / (settings.undetermined_mm * 1e-3) ** 2).any():
         return {}
     return _joints(group, fit, known, n_poses)
+
+
+def _starts(
+    group: tuple[str, ...],
+    start: Linkage,
+    expected: Array,
+    bodies: dict[str, Body],
+    points: Array,
+) -> list[Array]:
+    """Return the centres to begin with: as measured, and where a limb is on a line, others, too.
+
+    Nothing is known yet of the turn about that line: joints on it move least with that. Those are
+    as expected, and where on the line markers beyond keep their distances best.
+    """
+    if not bodies[group[1]].twist_open:
+        return [start.centres]
+    shape, centres = start.shapes[1], expected.copy()
+    far = shape[np.linalg.norm(shape, axis=1).argmax()]
+    ways = np.linspace(0.0, 2.0, WAYS)[:, None] * far
+    at = start.origins[:, 1, None] + ways @ np.swapaxes(start.rotations[:, 1], 1, 2)
+    first = len(start.shapes[0]) + len(shape)
+    for body in range(2, len(group)):
+        markers = points[:, first : first + len(start.shapes[body])]
+        away = lengths(at[:, :, None] - markers[:, None])
+        strays = away - np.stack([median_seen(one) for one in np.moveaxis(away, 1, 0)])
+        centres[body] = ways[mean_seen(np.abs(strays)).mean(axis=1).argmin()]
+        first += len(start.shapes[body])
+    return [start.centres, expected, centres]
 
 
 def _moved(rotations: Array, parent: int, child: int) -> float:
