@@ -6,7 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array, JointModel, PoseFlag, TopologicalModel
 from kinesphere.errors import DegenerateMotion
-from kinesphere.geometry.centres import Turning, View, fit_centre
+from kinesphere.geometry.centres import CentreFit, Turning, View, fit_centre
 from kinesphere.geometry.joint_turns import joint_modes
 from kinesphere.geometry.pose_errors import point_covariance, pose_covariance
 from kinesphere.geometry.rigid import (
@@ -25,6 +25,7 @@ from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.poses import Neighbour, fit_poses
 from kinesphere.skeleton.settings import SkeletonSettings
+from kinesphere.skeleton.symmetry import evened
 from kinesphere.skeleton.tree import Tree
 
 
@@ -48,9 +49,14 @@ def measure_chain(
     DegenerateMotion
         If the root's markers never show an orientation.
     """
-    bodies, joints = _measure_outward(tree, model, sample, settings, {})
-    if settings.link_limbs and (linked := fit_linked(tree, bodies, joints, sample, settings)):
-        bodies, joints = _measure_outward(tree, model, sample, settings, linked)
+    bodies, joints = _measure_outward(tree, model, sample, settings, {}, {}, {}, {})
+    linked, evener = {}, {}
+    if settings.link_limbs:
+        linked = fit_linked(tree, bodies, joints, sample, settings)
+    if settings.even_hips_mm:
+        evener = evened(joints, bodies, model, settings.even_hips_mm * 1e-3)
+    if linked or evener:
+        return _measure_outward(tree, model, sample, settings, linked, evener, bodies, joints)
     return bodies, joints
 
 
@@ -60,15 +66,30 @@ def _measure_outward(
     sample: dict[str, Array],
     settings: SkeletonSettings,
     linked: Mapping[str, LinkedJoint],
+    evener: Mapping[str, CentreFit],
+    bodies_before: Mapping[str, Body],
+    joints_before: Mapping[str, MeasuredJoint],
 ) -> tuple[dict[str, Body], dict[str, MeasuredJoint]]:
-    """Measure limb by limb from the root; joints that groups of limbs told are as those say."""
-    bodies = {tree.root: _measure_root(tree, sample, settings)}
-    find_axes(bodies[tree.root], None, tree, model, sample, settings)
+    """Measure limb by limb from the root.
+
+    Joints that groups of limbs told are as those say, hips as both say; what neither touches stays
+    as it was before, if it was measured.
+    """
     joints: dict[str, MeasuredJoint] = {}
+    if bodies_before:
+        bodies = {tree.root: bodies_before[tree.root]}
+    else:
+        bodies = {tree.root: _measure_root(tree, sample, settings)}
+        find_axes(bodies[tree.root], None, tree, model, sample, settings)
     for joint in tree.joints:
-        parent = bodies[joint.parent]
-        body, measured = _measure_limb(joint, parent, tree, sample, settings, linked)
-        bodies[joint.child], joints[joint.child] = body, measured
+        parent, limb = bodies[joint.parent], joint.child
+        same = parent is bodies_before.get(joint.parent)
+        if same and limb not in linked and limb not in evener:
+            bodies[limb], joints[limb] = bodies_before[limb], joints_before[limb]
+            continue
+        told = evener.get(limb) if same else None
+        body, measured = _measure_limb(joint, parent, tree, sample, settings, linked, told)
+        bodies[limb], joints[limb] = body, measured
         find_axes(body, parent, tree, model, sample, settings)
     return bodies, joints
 
@@ -103,6 +124,7 @@ def _measure_limb(
     sample: dict[str, Array],
     settings: SkeletonSettings,
     linked: Mapping[str, LinkedJoint],
+    fit: CentreFit | None,
 ) -> tuple[Body, MeasuredJoint]:
     labels = tree.markers[joint.child]
     own = cloud(labels, sample)
@@ -119,7 +141,8 @@ def _measure_limb(
         None if solid is None else _turning(solid, parent, own, cloud(parent.labels, sample)),
     )
     told = linked.get(joint.child)
-    fit = None if told is None else told.seen_from(parent, spread)
+    if told is not None:
+        fit = told.seen_from(parent, spread)
     if fit is None:
         fit = fit_centre(
             view,
