@@ -16,7 +16,8 @@ from dataclasses import replace
 import numpy as np
 
 from kinesphere.data import Motion, Recording, Skeleton
-from kinesphere.geometry.linkage import Linkage, fit_linkage
+from kinesphere.geometry.linkage import Linkage
+from kinesphere.geometry.linkage_fit import fit_linkage
 from kinesphere.skeleton.sampling import spread_frames
 
 DRAWS = 8

@@ -1,4 +1,4 @@
-"""Bodies that hang together at joints, fitted to their markers all at once.
+"""Bodies that hang together at joints, and the equations that fit them to their markers.
 
 Bundle adjustment: shapes, joint centres and every frame's poses are unknowns together, so that a
 body of two markers between two others takes its pose from the joints at both its ends.
@@ -11,18 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.geometry.rotations import hat, rotation_exp
-from kinesphere.geometry.vectors import is_seen, lengths
+from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
 
-SETTLED = 1e-5
-"""m, step of shapes and centres that ends the fit."""
-STILL = 1e-3
-"""rad, turn that ends the fit of a pose."""
-NEAR = 0.3
-"""rad, how far bodies may have turned since the poses that a fit of poses begins with."""
-LONGEST = 0.05
-"""m, longest step of them."""
 WIDEST = 0.3
 """rad, widest turn of a body in one step."""
 FLOOR = 1e-5
@@ -58,17 +50,7 @@ class Linkage(NamedTuple):
         return at
 
 
-class LinkageFit(NamedTuple):
-    """A linkage that fits its markers, and how well they know its joints."""
-
-    linkage: Linkage
-    scale: float
-    """m, robust standard deviation of a marker in each direction."""
-    information: Array
-    """(n_bodies, 3, 3) 1/m² of each centre, everything else unknown as well."""
-
-
-class _Equations(NamedTuple):
+class Equations(NamedTuple):
     """Linear in the unknowns that all frames share, poses solved out."""
 
     told: Array
@@ -79,112 +61,7 @@ class _Equations(NamedTuple):
     """(n_frames, n_pose)."""
 
 
-def fit_linkage(
-    start: Linkage,
-    points: Array,
-    expected: Array,
-    prior: Array,
-    looks: float,
-    *,
-    rounds: int = 60,
-) -> LinkageFit:
-    """Fit shapes, joint centres and poses of linked bodies by maximum a posteriori.
-
-    Every marker's distance from where its body puts it has a soft-L1 loss; its scale is the
-    residuals' own, one for all markers, for with two markers on a body each would claim to be
-    exact in turn. The first body's shape stays as it is. Poses are solved out frame by frame, as
-    structure is in bundle adjustment [1]_.
-
-    Parameters
-    ----------
-    start
-        Where to begin.
-    points : (n_frames, n_markers, 3) m
-        Markers in the world, body by body; NaN where not seen.
-    expected : (n_bodies, 3) m
-        Expected centres in their parents, as those are at the start; the first row says nothing.
-    prior : (n_bodies,) 1/m²
-        How firmly each is expected there, in every direction.
-    looks
-        How many independent looks at the joints all the frames make.
-    rounds
-        Most steps.
-
-    References
-    ----------
-    .. [1] Triggs et al. (2000), Bundle adjustment: a modern synthesis, LNCS 1883, 298-372, section
-       6.1, doi:10.1007/3-540-44480-7_21.
-    """
-    linkage, seen = start, is_seen(points)
-    n_shared = 3 * sum(len(s) for s in start.shapes[1:]) + 3 * (len(start.parents) - 1)
-    stiff = np.repeat(np.append(np.zeros(n_shared // 3 - len(prior) + 1), prior[1:]), 3)
-    for _ in range(rounds):
-        off, scale = _misfit(linkage, points, seen)
-        size = lengths(off) / scale
-        weights = seen / np.sqrt(1 + (size / 2) ** 2) / scale**2 * (looks / len(points))
-        equations = _equations(linkage, off, weights)
-        told = equations.told + np.diag(stiff) + _still(linkage)
-        strays = np.zeros(n_shared)
-        strays[-3 * (len(prior) - 1) :] = (linkage.centres[1:] - expected[1:]).ravel()
-        step = -_inverse(told) @ (equations.score + stiff * strays)
-        length = float(np.linalg.norm(step))
-        step *= min(1.0, LONGEST / max(length, 1e-12))
-        linkage = _moved(linkage, step, -(equations.own + equations.follow @ step))
-        if length < SETTLED:
-            break
-    known = equations.told + _still(linkage)
-    covariance = _inverse(known + np.diag(stiff))
-    first = n_shared - 3 * (len(prior) - 1)
-    blocks = [np.zeros((3, 3))]
-    for body in range(len(prior) - 1):
-        at = slice(first + 3 * body, first + 3 * body + 3)
-        told_here = np.linalg.pinv(covariance[at, at], hermitian=True) - np.diag(stiff[at])
-        values, vectors = np.linalg.eigh(told_here)
-        blocks.append((vectors * np.maximum(values, 0.0)) @ vectors.T)
-    return LinkageFit(linkage, scale, np.array(blocks))
-
-
-def pose_linkage(start: Linkage, points: Array, *, rounds: int = 20) -> tuple[Linkage, Array]:
-    """Fit the poses of linked bodies to their markers; shapes, centres, the first body stay.
-
-    Residuals have a soft-L1 loss. Every body is expected where it starts, ± `NEAR`: where markers
-    hardly tell a turn it stays, and does not leap from one side of a fold to the other.
-
-    Parameters
-    ----------
-    start
-        With poses to begin with.
-    points : (n_frames, n_markers, 3) m
-        Markers of all bodies but the first; none is NaN.
-
-    Returns
-    -------
-    linkage : Linkage
-    settled : (n_frames,) of bool
-    """
-    held = start._replace(shapes=(np.empty((0, 3)), *start.shapes[1:]))
-    seen = is_seen(points)
-    settled = np.zeros(len(points), dtype=np.bool_)
-    turned = np.zeros((len(points), 3 * len(start.parents) - 3))
-    for _ in range(rounds):
-        off, scale = _misfit(held, points, seen)
-        root = (1 + (lengths(off) / scale / 2) ** 2) ** -0.25
-        by_pose = _by_pose(held, points.shape[1])[..., 3:-3]
-        pose = (by_pose * root[..., None, None]).reshape(len(points), -1, by_pose.shape[3])
-        pull = np.swapaxes(pose, 1, 2) @ (off * root[..., None]).reshape(len(points), -1, 1)
-        firm = (scale / NEAR) ** 2
-        square = _square(pose) + firm * np.eye(by_pose.shape[3])
-        step = -np.linalg.solve(square, pull + firm * turned[..., None])[..., 0]
-        step *= np.minimum(1.0, WIDEST / np.maximum(np.abs(step).max(axis=1), 1e-12))[:, None]
-        turned += step
-        held = _moved(held, np.zeros(0), np.pad(step, ((0, 0), (3, 3))))
-        settled = np.abs(step).max(axis=1) < STILL
-        if settled.all():
-            break
-    return held._replace(shapes=start.shapes), settled
-
-
-def _misfit(linkage: Linkage, points: Array, seen: NDArray[np.bool_]) -> tuple[Array, float]:
+def misfit(linkage: Linkage, points: Array, seen: NDArray[np.bool_]) -> tuple[Array, float]:
     """Return residuals (n_frames, n_markers, 3) m, 0 where unseen, and their robust scale in m."""
     origins = linkage.origins
     placed = [
@@ -198,23 +75,23 @@ def _misfit(linkage: Linkage, points: Array, seen: NDArray[np.bool_]) -> tuple[A
     return off, max(usual * float(np.sqrt(free / max(free - taken, 1.0))), FLOOR)
 
 
-def _equations(linkage: Linkage, off: Array, weights: Array) -> _Equations:
+def equations(linkage: Linkage, off: Array, weights: Array) -> Equations:
     """Return the normal equations of what all frames share, every frame's poses solved out."""
     n, n_markers = off.shape[:2]
     root = np.sqrt(weights)[..., None]
     residual = (off * root).reshape(n, -1, 1)
     shared = (_by_shared(linkage, n_markers) * root[..., None]).reshape(n, 3 * n_markers, -1)
-    pose = (_by_pose(linkage, n_markers) * root[..., None]).reshape(n, 3 * n_markers, -1)
+    pose = (by_pose_of(linkage, n_markers) * root[..., None]).reshape(n, 3 * n_markers, -1)
     right = np.concatenate([shared, residual], axis=2)
     cross = np.swapaxes(pose, 1, 2) @ right
-    follow = np.linalg.solve(_square(pose), cross)
+    follow = np.linalg.solve(square_of(pose), cross)
     flat = shared.reshape(-1, shared.shape[2])
     total = flat.T @ right.reshape(-1, right.shape[2])
     total -= np.tensordot(cross[..., :-1], follow, ((0, 1), (0, 1)))
-    return _Equations(total[:, :-1], total[:, -1], follow[..., :-1], follow[..., -1])
+    return Equations(total[:, :-1], total[:, -1], follow[..., :-1], follow[..., -1])
 
 
-def _by_pose(linkage: Linkage, n_markers: int) -> Array:
+def by_pose_of(linkage: Linkage, n_markers: int) -> Array:
     """Return how markers follow a turn of each body and a shift of the first, (n, m, 3, k)."""
     n, n_bodies = linkage.rotations.shape[:2]
     origins, first = linkage.origins, 0
@@ -257,7 +134,7 @@ def _way_up(linkage: Linkage, body: int) -> Iterator[tuple[int, int]]:
         child = parent
 
 
-def _square(pose: Array) -> Array:
+def square_of(pose: Array) -> Array:
     """Return every frame's normal matrix, solvable where a turn is open."""
     square = np.swapaxes(pose, 1, 2) @ pose
     least = LOOSE * np.trace(square, axis1=1, axis2=2)
@@ -265,7 +142,7 @@ def _square(pose: Array) -> Array:
     return square
 
 
-def _still(linkage: Linkage) -> Array:
+def still(linkage: Linkage) -> Array:
     """Return what keeps bodies from turning in their own frames, which no marker tells."""
     n_shapes = 3 * sum(len(s) for s in linkage.shapes[1:])
     n_shared = n_shapes + 3 * (len(linkage.parents) - 1)
@@ -279,7 +156,7 @@ def _still(linkage: Linkage) -> Array:
     return total
 
 
-def _inverse(matrix: Array) -> Array:
+def inverse_of(matrix: Array) -> Array:
     """Return the inverse of a symmetric matrix whose unknowns may differ in size by far."""
     sizes = 1 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
     inner = np.linalg.pinv(sizes[:, None] * matrix * sizes, rcond=ROUNDING, hermitian=True)
@@ -287,7 +164,7 @@ def _inverse(matrix: Array) -> Array:
     return inverse
 
 
-def _moved(linkage: Linkage, step: Array, poses: Array) -> Linkage:
+def moved_by(linkage: Linkage, step: Array, poses: Array) -> Linkage:
     """Return the linkage with what is shared, unless that is empty, and every pose moved."""
     shapes, centres = list(linkage.shapes), linkage.centres.copy()
     if len(step):

@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kinesphere.data import Array
+from kinesphere.data import Array, Mask
 from kinesphere.geometry.centres import CentreFit, with_expectation
-from kinesphere.geometry.linkage import Linkage, LinkageFit, fit_linkage
+from kinesphere.geometry.linkage import Linkage
+from kinesphere.geometry.linkage_fit import LinkageFit, fit_linkage
 from kinesphere.geometry.range_of_motion import range_of_motion, spread_sample
 from kinesphere.geometry.rigid import into_frame
 from kinesphere.geometry.rotations import mean_rotation
@@ -78,7 +79,7 @@ def fit_linked(
     -------
     child limb → LinkedJoint
     """
-    linked = {}
+    linked: dict[str, LinkedJoint] = {}
     for group in find_groups(tree, bodies):
         if all(joints[limb].source in (BETWEEN, STEADY) for limb in group[1:]):
             linked |= _fit_group(group, bodies, joints, sample, settings)
@@ -186,7 +187,7 @@ def _moved(rotations: Array, parent: int, child: int) -> float:
 
 
 def _joints(
-    group: tuple[str, ...], fit: LinkageFit, known: Array, n_poses: list[int]
+    group: tuple[str, ...], fit: LinkageFit, known: Mask, n_poses: list[int]
 ) -> dict[str, LinkedJoint]:
     linked = {}
     origins = fit.linkage.origins

@@ -5,7 +5,8 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
 from kinesphere.data import Array, PoseFlag
-from kinesphere.geometry.linkage import Linkage, pose_linkage
+from kinesphere.geometry.linkage import Linkage
+from kinesphere.geometry.linkage_fit import pose_linkage
 from kinesphere.geometry.vectors import is_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.measured import MeasuredJoint
