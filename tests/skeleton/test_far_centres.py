@@ -6,9 +6,9 @@ import pytest
 from kinesphere.data import JointModel
 from kinesphere.geometry.centres import CentreFit
 from kinesphere.skeleton.body import Body
-from kinesphere.skeleton.chain import MeasuredJoint
 from kinesphere.skeleton.far_centres import far_centres
 from kinesphere.skeleton.landmarks import BETWEEN
+from kinesphere.skeleton.measured import MeasuredJoint
 
 THIGH = np.array([[0.02, -0.2, 0.09], [0.0, -0.42, 0.055]])
 SHANK = np.array([[0.04, -0.55, 0.0], [0.0, -0.80, 0.05]])

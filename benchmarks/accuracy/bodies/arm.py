@@ -4,9 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from benchmarks.accuracy.bodies.arm_twin import twin_figures
 from benchmarks.accuracy.bodies.cases import folder, hidden
 from kinesphere import read
+from kinesphere.data import Skeleton
 from kinesphere.skeleton import discover, fit_skeleton
+from kinesphere.skeleton.settings import SkeletonSettings
 
 
 def arm_figures() -> dict[str, object]:
@@ -18,26 +21,42 @@ def arm_figures() -> dict[str, object]:
     recording = hidden(read(folder() / "rigid-bodies" / "arm-4-2-3.c3d"))
     found = discover(recording)
     middle = recording.n_frames // 2
-    halves = [
-        fit_skeleton(replace(recording, markers=np.array(part)), found.model)
+    parts = [
+        replace(recording, markers=np.array(part))
         for part in (recording.markers[:middle], recording.markers[middle:])
     ]
-    apart = {}
-    for joint in halves[0].skeleton.joints:
-        ends = [halves[0].skeleton.limb(name) for name in (joint.parent, joint.child)]
-        better = max(ends, key=lambda limb: len(limb.markers)).name
-        centres = []
-        for half in halves:
-            here = half.skeleton.joint(joint.name)
-            centre = here.centre_in_parent if better == here.parent else here.centre_in_child
-            limb = half.skeleton.limb(better)
-            centres.append((limb.marker_positions, centre))
-        apart[joint.name] = 1e3 * float(np.linalg.norm(_laid_on(*centres)))
+    halves = [fit_skeleton(part, found.model).skeleton for part in parts]
+    alone = SkeletonSettings(link_limbs=False)
+    limb_by_limb = [fit_skeleton(part, found.model, alone).skeleton for part in parts]
+    whole = fit_skeleton(recording, found.model)
     return {
         "sizes": sorted(len(segment.markers) for segment in found.model.segments),
         "joints": len(found.model.joints),
-        "halves_mm": apart,
+        "halves_mm": _apart(*halves),
+        "limb_by_limb_mm": _apart(*limb_by_limb),
+        "told_mm": {
+            joint.name: 1e3 * float(np.sqrt(np.trace(joint.covariance + other.covariance)))
+            for joint, other in zip(halves[0].joints, halves[1].joints, strict=True)
+        },
+        "twins": twin_figures(
+            recording, whole, lambda twin: fit_skeleton(twin, found.model), _apart
+        ),
     }
+
+
+def _apart(first: Skeleton, second: Skeleton) -> dict[str, float]:
+    """Return joint → how far apart its centres are in its better-marked limb, mm."""
+    apart = {}
+    for joint in first.joints:
+        ends = [first.limb(name) for name in (joint.parent, joint.child)]
+        better = max(ends, key=lambda limb: len(limb.markers)).name
+        centres = []
+        for half in (first, second):
+            here = half.joint(joint.name)
+            centre = here.centre_in_parent if better == here.parent else here.centre_in_child
+            centres.append((half.limb(better).marker_positions, centre))
+        apart[joint.name] = 1e3 * float(np.linalg.norm(_laid_on(*centres)))
+    return apart
 
 
 def _laid_on(first, second) -> np.ndarray:

@@ -220,14 +220,34 @@ def _functional(rows: Sequence[dict[str, Any]], peer: str) -> str:
 
 
 def _arm(arm: dict[str, Any]) -> str:
-    apart = ", ".join(f"{name} {value:.1f} mm" for name, value in arm["halves_mm"].items())
+    apart = _apart(arm["halves_mm"])
     return (
         "## The unlabelled arm\n\n"
         f"Bodies of {', '.join(map(str, arm['sizes']))} markers, {arm['joints']} joints. Centres "
         f"between the halves of the trial, in the better-marked limb: {apart}. The three markers "
         "of the last body lie within 5 mm of a line, so their own pose hardly tells a turn about "
-        "it.\n"
+        "it.\n\n"
+        f"Limb by limb (`skeleton.link_limbs=false`) they are {_apart(arm['limb_by_limb_mm'])} "
+        f"apart; {_apart(arm['told_mm'])} are told.\n\n"
+        "What halves can tell: twins of the arm, its own motion about known centres, with what its "
+        "markers stray put back on. *turned*: every marker's strays by a rotation of its own, so "
+        "that they go with the pose as skin does; *shifted*: from another time of the half "
+        "besides, so that they go with nothing. The worst joint, medians of the draws, from "
+        "nothing and by maximum likelihood that begins with the true shapes, centres and poses: "
+        "where that leads away from the truth, the half does not tell it.\n\n"
+        "| noise | from nothing: halves | error | begun with the truth: halves | error | halves "
+        "within 3 mm |\n|---|---:|---:|---:|---:|---:|\n"
+        + "".join(
+            f"| {twin['noise']} | {_n(twin['halves_mm'], 'mm')} | {_n(twin['error_mm'], 'mm')} "
+            f"| {_n(twin['begun_halves_mm'], 'mm')} | {_n(twin['begun_error_mm'], 'mm')} "
+            f"| {twin['begun_within']} of {twin['draws']} |\n"
+            for twin in arm["twins"]
+        )
     )
+
+
+def _apart(joints: dict[str, float]) -> str:
+    return ", ".join(f"{name} {value:.1f} mm" for name, value in joints.items())
 
 
 def _hiding(rows: Sequence[dict[str, Any]]) -> str:

@@ -125,6 +125,21 @@ def fit_centre(
     )
 
 
+def with_expectation(
+    centre: Array, information: Array, spread: float, noise: float, n_poses: int
+) -> CentreFit:
+    """Return a centre found in another way, from what the motion told about it, (3, 3) 1/m²."""
+    prior = np.eye(3) / spread**2
+    return CentreFit(
+        centre=centre,
+        noise=noise,
+        data_covariance=_inverse(information, prior, SILENT),
+        prior=prior,
+        covariance=_inverse(information, prior, 1.0),
+        n_poses=n_poses,
+    )
+
+
 def _has_skin(view: View) -> bool:
     """Return whether it is known what goes with the joint, and in poses enough to reckon with."""
     turning = view.turning

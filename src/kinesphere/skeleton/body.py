@@ -41,6 +41,10 @@ class Body:
     """(3,) unit vector towards the body's right, seen from the limb."""
     up: Array | None = None
     """(3,) unit vector, the body's up or the limb's proximal direction, seen from the limb."""
+    own_pose: bool = False
+    """True where its markers alone tell its pose."""
+    linked: bool = False
+    """True where limbs on either side were fitted along with it, and tell its pose."""
     twist_open: bool = False
     """True where markers and joint lie on one line: nothing of the limb's own tells its twist."""
     borrow: Array | None = None

@@ -6,8 +6,8 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.skeleton.body import Body
-from kinesphere.skeleton.chain import MeasuredJoint
 from kinesphere.skeleton.landmarks import BETWEEN
+from kinesphere.skeleton.measured import MeasuredJoint
 
 LEAST_LENGTH = 0.2
 """m, what a limb is taken for whose markers are few: a forearm's are all at the wrist."""

@@ -90,7 +90,7 @@ def fit_skeleton(
         model = adopt(model, adopted)
         tree = find_tree(recording, model)
         bodies, joints = measure_chain(tree, model, sample, settings)
-    solved = solve_poses(tree, bodies, joints, markers, recording.rate, settings)
+    solved = solve_poses(tree, bodies, joints, markers, recording.rate, settings, frames)
     poses = {limb: solved.of(i) for i, limb in enumerate(tree.limbs)}
     described = {
         child: describe_joint(j, poses[j.model.parent], poses[child], bodies[child], settings)

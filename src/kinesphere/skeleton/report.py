@@ -7,7 +7,7 @@ from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.range_of_motion import RANGE_SAMPLE, range_of_motion
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import unit
-from kinesphere.skeleton.chain import MeasuredJoint
+from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.poses import Poses
 from kinesphere.skeleton.settings import SkeletonSettings
 

@@ -78,6 +78,21 @@ class SkeletonSettings:
         low=0.0,
         high=10.0,
     )
+    link_limbs: bool = setting(
+        True,
+        "fit limbs without a pose of their own together with the limbs on either side, where no "
+        "landmark tells their joints",
+    )
+    even_hips_mm: float = setting(
+        7.0,
+        "how unlike a hip and the other one's mirror image in the pelvis' markers may be, in each "
+        "direction; 0 leaves both to themselves",
+        unit="mm",
+        low=0.0,
+        high=1000.0,
+        source="5 mm of either marker of a pair shift and tilt the plane by 5 and 4 mm at the hip, "
+        "beside a few mm that people's sides differ by",
+    )
     adopt_markers: bool = setting(
         True, "let markers the model does not know join the limb they are rigid with"
     )

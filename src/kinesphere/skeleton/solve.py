@@ -3,12 +3,15 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinesphere.data import Array, Codes, PoseFlag
 from kinesphere.geometry.rigid import out_of_frame
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import unit
-from kinesphere.skeleton.chain import MeasuredJoint
+from kinesphere.skeleton.linked import find_groups
+from kinesphere.skeleton.linked_poses import pose_linked
+from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud, next_normals
 from kinesphere.skeleton.poses import BLOCK, Neighbour, Poses, aim, bridge, fit_poses
 from kinesphere.skeleton.settings import SkeletonSettings
@@ -40,6 +43,7 @@ def solve_poses(
     markers: dict[str, Array],
     rate: float,
     settings: SkeletonSettings,
+    frames: NDArray[np.intp],
 ) -> PoseArrays:
     """Return the poses of every limb in every frame; limbs in the tree's order.
 
@@ -49,6 +53,8 @@ def solve_poses(
         Label → (n_frames, 3) m in the world.
     rate
         Hz.
+    frames
+        Those that bodies were measured in.
     """
     n_frames, n_limbs = len(next(iter(markers.values()))), len(tree.limbs)
     arrays = PoseArrays(
@@ -58,7 +64,14 @@ def solve_poses(
         np.full((n_frames, n_limbs), np.nan),
     )
     measured = _Measured(tree, bodies, joints, markers)
+    groups = {group[1]: group for group in find_groups(tree, bodies)}
     for i, limb in enumerate(tree.limbs):
+        if limb in groups and bodies[limb].linked:
+            group = groups[limb]
+            at = {name: tree.limbs.index(name) for name in group}
+            open_ = {name: arrays.of(at[name]) for name in group[1:] if bodies[name].linked}
+            first = arrays.of(at[group[0]])
+            pose_linked(group, bodies, joints, markers, frames, first, open_)
         body, poses = bodies[limb], arrays.of(i)
         own = cloud(tree.markers[limb], markers)
         parent = None if body.parent is None else arrays.of(tree.limbs.index(body.parent))

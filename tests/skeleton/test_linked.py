@@ -1,0 +1,100 @@
+"""A limb of two markers between two others: all three are measured together."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.ndimage import gaussian_filter1d
+
+from kinesphere.data import JointModel, Landmark, Recording, Segment, TopologicalModel
+from kinesphere.geometry.rotations import rotation_exp
+from kinesphere.skeleton import fit_skeleton
+from kinesphere.skeleton.settings import SkeletonSettings
+
+COUNTS = (4, 2, 4)
+FRAMES = 700
+JOINTS = np.array([[0.03, -0.09, 0.01], [0.0, -0.27, 0.0]])
+
+
+def smooth(rng, scale):
+    walk = gaussian_filter1d(rng.normal(size=(FRAMES, 3)), 12, axis=0)
+    return scale * walk / walk.std(axis=0)
+
+
+def arm(rng, beside, noise=0.001):
+    """Markers (FRAMES, 10, 3) of an arm, and both joints in the world, (2, FRAMES, 3), in m."""
+    upper = rng.normal(scale=0.05, size=(4, 3))
+    middle = np.array([[beside, -0.05, 0.0], [-beside, -0.22, 0.0]])
+    hand = np.array(
+        [[0.03, -0.08, 0.0], [-0.03, -0.09, 0.01], [0.0, -0.12, 0.03], [0.0, -0.1, -0.03]]
+    )
+    first = rotation_exp(smooth(rng, 0.3))
+    second = first @ rotation_exp(smooth(rng, 0.5))
+    third = second @ rotation_exp(smooth(rng, 0.6))
+    elbow = smooth(rng, 0.1) + first @ JOINTS[0]
+    wrist = elbow + second @ JOINTS[1]
+    parts = [
+        (elbow - first @ JOINTS[0])[:, None] + upper @ np.swapaxes(first, 1, 2),
+        elbow[:, None] + middle @ np.swapaxes(second, 1, 2),
+        wrist[:, None] + hand @ np.swapaxes(third, 1, 2),
+    ]
+    markers = np.concatenate(parts, axis=1)
+    return markers + noise * rng.normal(size=markers.shape), np.array([elbow, wrist])
+
+
+def model(landmarks=()):
+    labels = [f"*{i}" for i in range(sum(COUNTS))]
+    at = np.split(labels, np.cumsum(COUNTS)[:-1])
+    segments = tuple(Segment(f"limb_{i}", tuple(map(str, own))) for i, own in enumerate(at))
+    joints = (
+        JointModel("joint_1", "limb_0", "limb_1", landmarks=landmarks),
+        JointModel("joint_2", "limb_1", "limb_2"),
+    )
+    return TopologicalModel("arm", segments, joints, "limb_0")
+
+
+def solved(markers, tree=None, **settings):
+    labels = tuple(f"*{i}" for i in range(sum(COUNTS)))
+    recording = Recording(markers=markers, labels=labels, rate=120.0)
+    return fit_skeleton(recording, tree or model(), SkeletonSettings(**settings))
+
+
+def wrist_off(motion, truth):
+    """How far the wrist is from the truth where the hand carries it, median in m."""
+    wrist = motion.skeleton.joint("joint_2").centre_in_child
+    found = motion.origins[:, 2] + motion.rotations[:, 2] @ wrist
+    return float(np.nanmedian(np.linalg.norm(found - truth[1], axis=1)))
+
+
+@pytest.mark.parametrize("beside", [0.003, 0.02])
+def test_the_joint_beyond_is_found(rng, beside):
+    markers, truth = arm(rng, beside)
+    assert wrist_off(solved(markers), truth) < 0.0035  # a hand's pose alone is off by that
+
+
+def test_limb_by_limb_a_line_leads_astray(rng):
+    markers, truth = arm(rng, 0.003)
+    alone = solved(markers, link_limbs=False)
+    assert wrist_off(solved(markers), truth) <= wrist_off(alone, truth)
+
+
+def test_both_limbs_have_the_joint_in_the_same_place(rng):
+    motion = solved(arm(rng, 0.02, noise=1e-6)[0])
+    for number, joint in enumerate(motion.skeleton.joints):
+        by_parent = motion.origins[:, number] + motion.rotations[:, number] @ joint.centre_in_parent
+        above = number + 1
+        by_child = motion.origins[:, above] + motion.rotations[:, above] @ joint.centre_in_child
+        assert_allclose(by_parent, by_child, atol=2e-4)
+
+
+def test_a_landmark_keeps_limbs_to_themselves(rng):
+    markers, _ = arm(rng, 0.02)
+    told = model((Landmark(weights={"*3": 1.0}, spread=0.02, source="somebody's measures"),))
+    linked, alone = solved(markers, told), solved(markers, told, link_limbs=False)
+    assert_allclose(linked.origins, alone.origins, rtol=0, atol=0)
+
+
+def test_hidden_markers_are_posed_the_old_way(rng):
+    markers, _ = arm(rng, 0.02)
+    markers[300:320, 6:] = np.nan
+    motion = solved(markers)
+    assert np.isfinite(motion.rotations[:, 1]).all()
