@@ -8,7 +8,7 @@ from kinesphere.data import Array, Mask
 from kinesphere.geometry.centres import CentreFit, with_expectation
 from kinesphere.geometry.linkage import Linkage
 from kinesphere.geometry.linkage_fit import LinkageFit, fit_linkage
-from kinesphere.geometry.range_of_motion import range_of_motion, spread_sample
+from kinesphere.geometry.range_of_motion import range_of_motion
 from kinesphere.geometry.rigid import into_frame
 from kinesphere.geometry.rotations import mean_rotation
 from kinesphere.geometry.vectors import is_seen, lengths
@@ -183,7 +183,7 @@ def _starts(
 def _moved(rotations: Array, parent: int, child: int) -> float:
     """Return the range of motion of a joint in rad."""
     relative = np.swapaxes(rotations[:, parent], 1, 2) @ rotations[:, child]
-    return range_of_motion(relative[spread_sample(len(relative))])
+    return range_of_motion(relative)
 
 
 def _joints(
