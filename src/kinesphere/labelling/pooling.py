@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from kinesphere.data import Array, MarkerStatistics
 from kinesphere.geometry.signature import scale_of
 
-DEVIATION_FLOOR = 0.01
+DEVIATION_FLOOR = 0.005
 """Added to a deviation before its logarithm is taken, in scales of the body."""
 
 
