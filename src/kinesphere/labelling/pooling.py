@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from kinesphere.data import Array, MarkerStatistics
 from kinesphere.geometry.signature import scale_of
 
-DEVIATION_FLOOR = 0.01
-"""Added to a deviation before its logarithm is taken, in scales of the body."""
+DEVIATION_FLOOR = 0.005
+"""Added to a deviation before its logarithm is taken, in scales of the body: 3 cm on a full layout.
+With twice that a hand that hangs still is hardly told from a marker on the thigh."""
 
 
 class Pool(NamedTuple):

@@ -15,8 +15,8 @@ from kinesphere.labelling.postures import postures_of, spread_of_distances, stea
 
 DISTANCE_SHARE = 0.12
 """Spread between people of a mean distance, as a share of it, beside that between postures."""
-DISTANCE_FLOOR = 0.008
-"""And at least, in scales of the body: 5 cm on a full layout."""
+DISTANCE_FLOOR = 0.011
+"""And at least, in scales of the body: 7 cm on a full layout."""
 DEVIATION_SHARE = 0.6
 """How much of a distance's variance over time its mean may be off by: another motion."""
 DEVIATION_SPREAD = 0.3
@@ -24,7 +24,7 @@ DEVIATION_SPREAD = 0.3
 POSTURE_DEVIATION = 0.5
 """Deviation over time of a distance that postures change, as a share of its spread between them:
 what counts as one recording more."""
-POSTURE_DEVIATION_SPREAD = 1.0
+POSTURE_DEVIATION_SPREAD = 0.8
 """Spread between recordings of the logarithm of such a deviation: what one rests another moves."""
 STIFF = 1e-6
 """Spread between postures below which a distance is within a segment, in scales of the body."""

@@ -13,7 +13,7 @@ _SOFT = 6.0
 @kernel
 def _share(log_std: float) -> float:
     """Return what the mean of a distance with this logarithm of its deviation may be off by."""
-    std = max(np.exp(log_std) - 0.01, 0.0)
+    std = max(np.exp(log_std) - 0.005, 0.0)
     return float(0.6 * std * std)
 
 
