@@ -1,0 +1,87 @@
+"""Points that stay where they are while others move: props more likely than markers.
+
+A table, a plate on the floor, a wand laid down. A standing person's feet rest as well, so this is
+a guess to start from: what rests is set aside, and comes in where the body lacks it.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array
+from kinesphere.geometry.signature import FRAMES, Signature, evenly_spread, signature
+from kinesphere.labelling.layout import Layout, Solved
+from kinesphere.labelling.problem import Labels, problem_of
+from kinesphere.labelling.solving import scale_by_labels, solve
+from kinesphere.labelling.template import LEAST_LABELS
+
+RESTING = 0.03
+"""A point rests if it spreads over less than this share of what the middle point spreads over in
+the same frames: props have 0.01 and less, feet that stand 0.005 to 0.2, what walks 0.8 and more."""
+
+
+def resting(points: Array) -> NDArray[np.bool_]:
+    """Return which points rest in the room while most others move, (n_points,).
+
+    Parameters
+    ----------
+    points : (n_frames, n_points, 3)
+        NaN where not seen.
+    """
+    some = points[evenly_spread(len(points), FRAMES)]
+    seen = np.isfinite(some).all(axis=2)
+    rests = np.zeros(some.shape[1], dtype=bool)
+    for i in range(some.shape[1]):
+        there = some[seen[:, i]]
+        both = seen[seen[:, i]].sum(axis=0) >= 2
+        if both.sum() < 2 or not both[i]:
+            continue
+        spread = np.sqrt(np.nanvar(there[:, both], axis=0).sum(axis=1))
+        rests[i] = spread[np.flatnonzero(both) == i][0] < RESTING * np.median(spread)
+    return rests
+
+
+def solved_apart(
+    points: Array, found: Signature, layout: Layout
+) -> tuple[Solved, NDArray[np.intp]]:
+    """Search for labels with what rests set aside, which then gets the labels it fits beside them.
+
+    Props join the shortest tree that scales are measured by, and may fit a foot as well as the
+    foot does. Where labels of what moves do not come out, all points are searched at once.
+
+    Parameters
+    ----------
+    points : (n_frames, n_points, 3)
+        NaN where not seen.
+    found
+        Their statistics.
+
+    Returns
+    -------
+    solved
+    some
+        The points it is about: the others are no markers.
+    """
+    every = np.arange(points.shape[1])
+    rests = resting(points)
+    moving = np.flatnonzero(~rests)
+    if not rests.any() or len(moving) < LEAST_LABELS:
+        return solve(found, layout), every
+    alone = solve(signature(points[:, moving]), layout)
+    if alone.converged == 0:
+        return solve(found, layout), every
+    labels = np.full(len(every), -1, dtype=np.int64)
+    labels[moving] = alone.labels
+    joined = _joined(found, layout, labels, np.flatnonzero(rests))
+    if (joined == labels).all():
+        return alone, moving
+    return solve(found, layout, joined), every
+
+
+def _joined(found: Signature, layout: Layout, labels: Labels, rest: NDArray[np.intp]) -> Labels:
+    """Return labels with those that nobody bears on the resting points that fit them."""
+    free = np.setdiff1d(np.arange(layout.template.n), labels)
+    if not len(free):
+        return labels
+    scale = scale_by_labels(found, labels, layout.template)
+    problem = problem_of(found, scale, layout.template)
+    return problem.descend(labels, nullable=True, points=rest, targets=free)
