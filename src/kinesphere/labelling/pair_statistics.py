@@ -30,7 +30,7 @@ from kinesphere.labelling.same_person import (
     rigid_pairs,
     template_of_person,
 )
-from kinesphere.labelling.resting import solved_apart
+from kinesphere.labelling.resting import resting, solved_apart
 from kinesphere.labelling.seating import seated
 from kinesphere.labelling.solving import continued, finished, refined
 from kinesphere.labelling.template import LEAST_LABELS
@@ -69,6 +69,8 @@ def match_pair_statistics(
         return _best_of([kept[body] for body in bodies], points, model)
     if start is None:
         kept = plausible(points, seen, layout.template.n)
+    else:
+        kept = kept[(start[kept] >= 0) | ~resting(points[:, kept])]
     if len(kept) < LEAST_LABELS:
         return nothing(
             n_points, f"{len(kept)} markers are seen; {LEAST_LABELS} at least can be told apart"

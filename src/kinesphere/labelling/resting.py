@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array
 from kinesphere.geometry.signature import FRAMES, Signature, evenly_spread, signature
+from kinesphere.labelling.kernels import linear_terms
 from kinesphere.labelling.layout import Layout, Solved
 from kinesphere.labelling.problem import Labels, problem_of
 from kinesphere.labelling.solving import scale_by_labels, solve
@@ -17,6 +18,12 @@ from kinesphere.labelling.template import LEAST_LABELS
 RESTING = 0.03
 """A point rests if it spreads over less than this share of what the middle point spreads over in
 the same frames: props have 0.01 and less, feet that stand 0.005 to 0.2, what walks 0.8 and more."""
+
+FEWEST = 3
+"""Resting points that a body must lack to get any back: a foot that stands rests as a whole..."""
+FITTING = 1.8
+"""...and nats a pair by which each of them must fit its label better than nothing: feet that stand
+have 2.0 to 2.8, props in a missing marker's place 0.5 to 2.4, but seldom three of them."""
 
 
 def resting(points: Array) -> NDArray[np.bool_]:
@@ -80,8 +87,12 @@ def solved_apart(
 def _joined(found: Signature, layout: Layout, labels: Labels, rest: NDArray[np.intp]) -> Labels:
     """Return labels with those that nobody bears on the resting points that fit them."""
     free = np.setdiff1d(np.arange(layout.template.n), labels)
-    if not len(free):
+    if len(free) < FEWEST or len(rest) < FEWEST:
         return labels
     scale = scale_by_labels(found, labels, layout.template)
     problem = problem_of(found, scale, layout.template)
-    return problem.descend(labels, nullable=True, points=rest, targets=free)
+    joined = problem.descend(labels, nullable=True, points=rest, targets=free)
+    came = rest[joined[rest] >= 0]
+    fit = -linear_terms(joined, problem.costs)[came, joined[came]] / max((joined >= 0).sum() - 1, 1)
+    joined[came[fit < FITTING]] = -1
+    return joined if (joined[rest] >= 0).sum() >= FEWEST else labels
