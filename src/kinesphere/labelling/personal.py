@@ -20,6 +20,7 @@ from kinesphere.labelling.labelled import Labelled, give, length_of
 from kinesphere.labelling.own_distances import FLOOR, own_distances
 from kinesphere.labelling.pair_statistics import MARGIN
 from kinesphere.labelling.problem import Labels, problem_of
+from kinesphere.labelling.resting import accompanied
 from kinesphere.labelling.runs import points_of
 from kinesphere.labelling.search import nearest_labels
 from kinesphere.labelling.template import (
@@ -146,4 +147,5 @@ def _assigned(labelled: Array, loose: Array, person: _Person) -> tuple[Labels, A
     new = labels[len(held) :]
     fit = -terms[np.arange(len(held), len(labels)), new] / max((labels >= 0).sum() - 1, 1)
     sure = 1 - np.exp(-np.maximum(margins[len(held) :], 0.0) / MARGIN)
-    return np.where(fit >= FITTING, new, -1), sure
+    fine = accompanied(points, labels, person.near)[len(held) :]
+    return np.where((fit >= FITTING) & fine, new, -1), sure

@@ -25,6 +25,10 @@ FITTING = 1.8
 """...and nats a pair by which each of them must fit its label better than nothing: feet that stand
 have 2.0 to 2.8, props in a missing marker's place 0.5 to 2.4, but seldom three of them."""
 
+COMPANY = (4, 2, 0.15)
+"""Nearest labels that a label of a resting point is seen beside, those of them whose points must
+stay about where they are as well, and what these may spread over, as above."""
+
 
 def resting(points: Array) -> NDArray[np.bool_]:
     """Return which points rest in the room while most others move, (n_points,).
@@ -34,17 +38,31 @@ def resting(points: Array) -> NDArray[np.bool_]:
     points : (n_frames, n_points, 3)
         NaN where not seen.
     """
+    return np.asarray(np.diag(spreads(points)) < RESTING)
+
+
+def spreads(points: Array) -> Array:
+    """Return how far points spread while others are seen, as shares of the middle point's spread.
+
+    Returns
+    -------
+    (n_points, n_points)
+        Of the second point, in the frames that show the first; NaN where fewer than two show both.
+    """
     some = points[evenly_spread(len(points), FRAMES)]
     seen = np.isfinite(some).all(axis=2)
-    rests = np.zeros(some.shape[1], dtype=bool)
-    for i in range(some.shape[1]):
+    n = some.shape[1]
+    found = np.full((n, n), np.nan)
+    for i in range(n):
         there = some[seen[:, i]]
         both = seen[seen[:, i]].sum(axis=0) >= 2
-        if both.sum() < 2 or not both[i]:
+        if both.sum() < 2:
             continue
         spread = np.sqrt(np.nanvar(there[:, both], axis=0).sum(axis=1))
-        rests[i] = spread[np.flatnonzero(both) == i][0] < RESTING * np.median(spread)
-    return rests
+        middle = float(np.median(spread))
+        if middle > 0:
+            found[i, both] = spread / middle
+    return found
 
 
 def solved_apart(
@@ -96,3 +114,24 @@ def _joined(found: Signature, layout: Layout, labels: Labels, rest: NDArray[np.i
     fit = -linear_terms(joined, problem.costs)[came, joined[came]] / max((joined >= 0).sum() - 1, 1)
     joined[came[fit < FITTING]] = -1
     return joined if (joined[rest] >= 0).sum() >= FEWEST else labels
+
+
+def accompanied(points: Array, labels: Labels, near: Labels) -> NDArray[np.bool_]:
+    """Return which points do not rest, or rest as their neighbours do: a limb rests as a whole.
+
+    Parameters
+    ----------
+    points : (n_frames, n_points, 3)
+        NaN where not seen.
+    labels : (n_points,)
+        −1 for none.
+    near : (n_labels, n_labels)
+        For each label all labels, itself and the nearest first.
+    """
+    spread = spreads(points)
+    nearest, fewest, far = COMPANY
+    fine = np.ones(len(labels), dtype=bool)
+    for i in np.flatnonzero((np.diag(spread) < RESTING) & (labels >= 0)):
+        beside = np.isin(labels, near[labels[i], 1 : nearest + 1])
+        fine[i] = (spread[i, beside] < far).sum() >= fewest
+    return fine
