@@ -31,6 +31,9 @@ LASTING = 0.15
 """Share of the recording that a track without label must last to be looked at then: pieces of one
 marker that are never seen together look like two."""
 
+SURER = 0.3
+"""Confidence that a label needs then to come or to move: a wrong one teaches its distances."""
+
 
 def recognised(
     markers: Array,
@@ -143,8 +146,8 @@ def recognise_again(
     that the first window did not show come in. Return whether anything changed.
     """
     held = sorted({label for label in state.labels if label >= 0})
-    least = LASTING * len(markers)
-    loose = [k for k, of in enumerate(state.labels) if of < 0 and length_of(state, k) >= least]
+    lasting = LASTING * len(markers)
+    loose = [k for k, of in enumerate(state.labels) if of < 0 and length_of(state, k) >= lasting]
     points = np.concatenate(
         [state.points[:, held], points_of(markers, [state.tracks[k] for k in loose])], axis=1
     )
@@ -153,8 +156,9 @@ def recognise_again(
     if match.note:
         return False
     state.fit = match.fit
-    sure = match.confidence >= least_confidence
-    new = np.where(sure, match.labels, -1)
+    stays = np.append(held, np.full(len(loose), -1)) == match.labels
+    least = np.where(stays, least_confidence, max(least_confidence, SURER))
+    new = np.where(match.confidence >= least, match.labels, -1)
     into = dict(zip(held, new[: len(held)].tolist(), strict=True))
     before = list(zip(state.labels, state.confidence, strict=True))
     changed = any(old != label for old, label in into.items()) or (new[len(held) :] >= 0).any()
