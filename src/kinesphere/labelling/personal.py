@@ -24,6 +24,7 @@ from kinesphere.labelling.problem import Labels, problem_of
 from kinesphere.labelling.resting import accompanied
 from kinesphere.labelling.runs import points_of
 from kinesphere.labelling.search import nearest_labels
+from kinesphere.labelling.sides import OTHER_SIDE, symmetric_pairs
 from kinesphere.labelling.template import (
     DEVIATION_FLOOR,
     DEVIATION_SHARE,
@@ -41,14 +42,16 @@ PRESENT = 0.5
 """Share of a stretch that a point must be seen in: two pieces of one marker are not both."""
 LEAST_CONFIDENCE = 0.3
 """Confidence from which on a label is given here."""
+ALONE = 0.5
+"""The same for a label that nobody bears yet, while others of its segment that nobody bears either
+are not in sight."""
 FITTING = 1.5
 """Nats a pair by which a piece must fit its label better than nothing: right ones 1.5 to 2.8."""
+VOTING = 0.1
+"""Confidence from which on a stretch has a voice about a label that nobody bears yet..."""
+VOTES = 2
+"""...and voices that are needed: stretches are other movements, so what is unsure adds up."""
 SEED = 20100517
-OTHER_SIDE = 0.02
-"""m, by which a distance within a segment differs from that of the other side: 6 mm in the median,
-10 to 12 in three of four, where the layout is symmetric..."""
-SYMMETRIC = 0.1
-"""...which it is where other people's two sides differ by less than this share."""
 
 
 class _Person(NamedTuple):
@@ -92,9 +95,7 @@ def personal_template(
     mean, variance = template.mean, template.variance
     if kin is not None and twin is not None:
         other = np.ix_(twin, twin)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            alike = np.abs(np.log(template.mean / template.mean[other])) < SYMMETRIC
-        told = kin & known[other] & alike
+        told = symmetric_pairs(template.size * template.mean, kin, twin) & known[other]
         mean = np.where(told, own.mean[other] / scale, mean)
         variance = np.where(told, (OTHER_SIDE / scale) ** 2 + own_variance[other], variance)
     personal = replace(
@@ -119,6 +120,7 @@ def recognise_rest(
     kin, twin = of_one_segment(model, template.labels), twins(model, template.labels)
     personal, scale = personal_template(template, state.points[:, into], kin, twin)
     near = nearest_labels(personal.mean)
+    known = np.isfinite(state.points[:, into, 0]).any(axis=0)
     person = _Person(personal, scale, near, twin, into)
     least = max(2, round(SHORTEST_S * rate))
     loose = [k for k, of in enumerate(state.labels) if of < 0 and length_of(state, k) >= least]
@@ -126,6 +128,7 @@ def recognise_rest(
     seen = np.isfinite(points[:, :, 0])
     tried: set[int] = set()
     given = False
+    votes: list[tuple[int, int, float]] = []
     for k in sorted(loose, key=lambda k: (-length_of(state, k), k)):
         if k in tried:
             continue
@@ -135,9 +138,35 @@ def recognise_rest(
         tried |= {loose[x] for x in here}
         labels, sure = _assigned(state.points[start:end, into], points[start:end, here], person)
         for x, label, c in zip(here, labels, sure, strict=True):
-            if label >= 0 and c >= max(least_confidence, LEAST_CONFIDENCE):
+            # where one of them is missing, the others may each bear their neighbour's label
+            whole = bool(np.isin(np.flatnonzero(kin[label] & ~known), labels).all())
+            least_sure = LEAST_CONFIDENCE if known[label] or whole else ALONE
+            if label >= 0 and c >= max(least_confidence, least_sure):
                 give(state, markers, loose[x], int(into[label]), float(c))
                 given = given or state.labels[loose[x]] >= 0
+            elif label >= 0 and c >= max(least_confidence, VOTING) and not known[label] and whole:
+                votes.append((loose[x], int(into[label]), float(c)))
+    return given or _counted(state, markers, votes, max(least_confidence, LEAST_CONFIDENCE))
+
+
+def _counted(
+    state: Labelled, markers: Array, votes: list[tuple[int, int, float]], least: float
+) -> bool:
+    """Give labels that nobody bears yet where several stretches agree; return whether any was.
+
+    Parameters
+    ----------
+    votes
+        Track, label and confidence of what one stretch alone was too unsure of.
+    """
+    given = False
+    for label in sorted({label for _, label, _ in votes}):
+        mine = [(k, c) for k, of, c in votes if of == label]
+        together = 1 - float(np.prod([1 - c for _, c in mine]))
+        if len(mine) >= VOTES and together >= least:
+            for k, _ in mine:
+                give(state, markers, k, label, together)
+                given = given or state.labels[k] == label
     return given
 
 
