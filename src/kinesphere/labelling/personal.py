@@ -140,7 +140,7 @@ def recognise_rest(
         for x, label, c in zip(here, labels, sure, strict=True):
             # where one of them is missing, the others may each bear their neighbour's label
             whole = bool(np.isin(np.flatnonzero(kin[label] & ~known), labels).all())
-            least_sure = LEAST_CONFIDENCE if known[label] or whole else ALONE
+            least_sure = LEAST_CONFIDENCE if known[label] else ALONE
             if label >= 0 and c >= max(least_confidence, least_sure):
                 give(state, markers, loose[x], int(into[label]), float(c))
                 given = given or state.labels[loose[x]] >= 0

@@ -15,7 +15,7 @@ OTHER_SIDE = 0.02
 less in three of four, 60 in a few."""
 SYMMETRIC = 0.1
 """Share by which the two sides of other people differ where the layout is not symmetric."""
-MATES = 2
+MATES = 1
 """Distances within the segment that tell two markers from each other, at least."""
 BETTER = 4.0
 """Mean squares of deviations by which two exchanged labels must fit the other side better."""
