@@ -42,15 +42,10 @@ PRESENT = 0.5
 """Share of a stretch that a point must be seen in: two pieces of one marker are not both."""
 LEAST_CONFIDENCE = 0.3
 """Confidence from which on a label is given here."""
-ALONE = 0.5
-"""The same for a label that nobody bears yet, while others of its segment that nobody bears either
-are not in sight."""
+UNKNOWN = 0.5
+"""The same for a label that nobody bears yet: it has no distances that could deny it."""
 FITTING = 1.5
 """Nats a pair by which a piece must fit its label better than nothing: right ones 1.5 to 2.8."""
-VOTING = 0.1
-"""Confidence from which on a stretch has a voice about a label that nobody bears yet..."""
-VOTES = 2
-"""...and voices that are needed: stretches are other movements, so what is unsure adds up."""
 SEED = 20100517
 
 
@@ -66,7 +61,10 @@ class _Person(NamedTuple):
 
 
 def personal_template(
-    template: Template, points: Array, kin: NDArray[np.bool_] | None = None, twin: Labels | None = None
+    template: Template,
+    points: Array,
+    kin: NDArray[np.bool_] | None = None,
+    twin: Labels | None = None,
 ) -> tuple[Template, float]:
     """Return a layout's template with the person's own distances where known, and their scale.
 
@@ -128,7 +126,6 @@ def recognise_rest(
     seen = np.isfinite(points[:, :, 0])
     tried: set[int] = set()
     given = False
-    votes: list[tuple[int, int, float]] = []
     for k in sorted(loose, key=lambda k: (-length_of(state, k), k)):
         if k in tried:
             continue
@@ -138,35 +135,10 @@ def recognise_rest(
         tried |= {loose[x] for x in here}
         labels, sure = _assigned(state.points[start:end, into], points[start:end, here], person)
         for x, label, c in zip(here, labels, sure, strict=True):
-            # where one of them is missing, the others may each bear their neighbour's label
-            whole = bool(np.isin(np.flatnonzero(kin[label] & ~known), labels).all())
-            least_sure = LEAST_CONFIDENCE if known[label] else ALONE
+            least_sure = LEAST_CONFIDENCE if known[label] else UNKNOWN
             if label >= 0 and c >= max(least_confidence, least_sure):
                 give(state, markers, loose[x], int(into[label]), float(c))
                 given = given or state.labels[loose[x]] >= 0
-            elif label >= 0 and c >= max(least_confidence, VOTING) and not known[label] and whole:
-                votes.append((loose[x], int(into[label]), float(c)))
-    return given or _counted(state, markers, votes, max(least_confidence, LEAST_CONFIDENCE))
-
-
-def _counted(
-    state: Labelled, markers: Array, votes: list[tuple[int, int, float]], least: float
-) -> bool:
-    """Give labels that nobody bears yet where several stretches agree; return whether any was.
-
-    Parameters
-    ----------
-    votes
-        Track, label and confidence of what one stretch alone was too unsure of.
-    """
-    given = False
-    for label in sorted({label for _, label, _ in votes}):
-        mine = [(k, c) for k, of, c in votes if of == label]
-        together = 1 - float(np.prod([1 - c for _, c in mine]))
-        if len(mine) >= VOTES and together >= least:
-            for k, _ in mine:
-                give(state, markers, k, label, together)
-                given = given or state.labels[k] == label
     return given
 
 

@@ -36,7 +36,9 @@ def symmetric_pairs(mean: Array, kin: NDArray[np.bool_], twin: Labels) -> NDArra
     both = (mean > 0) & (mean[np.ix_(twin, twin)] > 0)
     ratio = np.divide(mean, mean[np.ix_(twin, twin)], out=np.ones_like(mean), where=both)
     paired = twin != np.arange(len(twin))
-    alike = (np.abs(np.log(ratio)) < SYMMETRIC) | (np.abs(mean - mean[np.ix_(twin, twin)]) < OTHER_SIDE)
+    alike = (np.abs(np.log(ratio)) < SYMMETRIC) | (
+        np.abs(mean - mean[np.ix_(twin, twin)]) < OTHER_SIDE
+    )
     told = kin & both & alike & (paired[:, None] | paired)
     np.fill_diagonal(told, False)
     return np.asarray(told)
