@@ -22,6 +22,7 @@ from kinesphere.labelling.layout import Layout, Solved, layout_of
 from kinesphere.labelling.matching import Match, nothing
 from kinesphere.labelling.plausible import in_own_order, is_still, learnt_standing, plausible
 from kinesphere.labelling.problem import Labels, problem_of
+from kinesphere.labelling.resting import resting, solved_apart
 from kinesphere.labelling.same_person import (
     MIRROR_IMAGE,
     SKIN,
@@ -30,7 +31,6 @@ from kinesphere.labelling.same_person import (
     rigid_pairs,
     template_of_person,
 )
-from kinesphere.labelling.resting import resting, solved_apart
 from kinesphere.labelling.seating import seated
 from kinesphere.labelling.solving import continued, finished, refined
 from kinesphere.labelling.template import LEAST_LABELS

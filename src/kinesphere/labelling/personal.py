@@ -118,12 +118,12 @@ def recognise_rest(
     kin, twin = of_one_segment(model, template.labels), twins(model, template.labels)
     personal, scale = personal_template(template, state.points[:, into], kin, twin)
     near = nearest_labels(personal.mean)
-    known = np.isfinite(state.points[:, into, 0]).any(axis=0)
+    known = np.asarray(np.isfinite(state.points[:, into, 0]).any(axis=0))
     person = _Person(personal, scale, near, twin, into)
     least = max(2, round(SHORTEST_S * rate))
     loose = [k for k, of in enumerate(state.labels) if of < 0 and length_of(state, k) >= least]
     points = points_of(markers, [state.tracks[k] for k in loose])
-    seen = np.isfinite(points[:, :, 0])
+    seen = np.asarray(np.isfinite(points[:, :, 0]))
     tried: set[int] = set()
     given = False
     for k in sorted(loose, key=lambda k: (-length_of(state, k), k)):

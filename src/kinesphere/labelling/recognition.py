@@ -4,19 +4,13 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinesphere.data import Array, TopologicalModel
-from kinesphere.geometry.pair_distances import pair_distances
-from kinesphere.geometry.signature import FRAMES, evenly_spread
-from kinesphere.labelling.blocks import twins
 from kinesphere.labelling.labelled import Labelled, give, length_of, take
 from kinesphere.labelling.matching import Labeller, Match, nothing
 from kinesphere.labelling.pair_statistics import match_pair_statistics
-from kinesphere.labelling.problem import Labels
 from kinesphere.labelling.runs import Track, points_of
-from kinesphere.labelling.sides import denied_by_other_side, symmetric_pairs
-from kinesphere.labelling.template import of_one_segment, template_of
+from kinesphere.labelling.sides import one_sided
 
 WINDOWS_S = (16.0, 8.0, 4.0)
 """s, lengths of the windows tried: the longer, the more motion; the shorter, the more is whole."""
@@ -151,7 +145,8 @@ def recognise_again(
     """Recognise the body once more: what has a label as one point each, beside long tracks.
 
     They start from the labels they have. A label may go to another point as a whole, and markers
-    that the first window did not show come in. Return whether anything changed.
+    that the first window did not show come in, unless the other side denies what is not sure.
+    Return whether anything changed.
     """
     held = sorted({label for label in state.labels if label >= 0})
     lasting = LASTING * len(markers)
@@ -167,7 +162,7 @@ def recognise_again(
     new = np.where(match.confidence >= least_confidence, match.labels, -1)
     unsure = match.confidence < SURER
     stays = np.append(held, np.full(len(loose), -1)) == new
-    new[_one_sided(points, new, model) & unsure & ~stays] = -1
+    new[one_sided(points, new, model) & unsure & ~stays] = -1
     into = dict(zip(held, new[: len(held)].tolist(), strict=True))
     before = list(zip(state.labels, state.confidence, strict=True))
     changed = any(old != label for old, label in into.items()) or (new[len(held) :] >= 0).any()
@@ -183,19 +178,3 @@ def recognise_again(
         if label >= 0:
             give(state, markers, k, label, c)
     return bool(changed)
-
-
-def _one_sided(points: Array, labels: Labels, model: TopologicalModel) -> NDArray[np.bool_]:
-    """Return which points bear labels that the person's other side denies, (n_points,)."""
-    given = np.flatnonzero(labels >= 0)
-    mean = np.full((len(model.labels), len(model.labels)), np.nan)
-    mean[np.ix_(labels[given], labels[given])] = pair_distances(
-        points[evenly_spread(len(points), FRAMES)][:, given]
-    ).mean
-    template = template_of(model)
-    into = [model.labels.index(label) for label in template.labels]
-    kin, twin = of_one_segment(model, template.labels), twins(model, template.labels)
-    told = symmetric_pairs(template.size * template.mean, kin, twin)
-    denied = np.zeros(len(model.labels) + 1, dtype=bool)
-    denied[into] = denied_by_other_side(mean[np.ix_(into, into)], told, kin, twin)
-    return denied[labels]

@@ -50,7 +50,7 @@ def spreads(points: Array) -> Array:
         Of the second point, in the frames that show the first; NaN where fewer than two show both.
     """
     some = points[evenly_spread(len(points), FRAMES)]
-    seen = np.isfinite(some).all(axis=2)
+    seen = np.asarray(np.isfinite(some).all(axis=2))
     n = some.shape[1]
     found = np.full((n, n), np.nan)
     for i in range(n):

@@ -7,8 +7,12 @@ layout is symmetric: much nearer than those of other people.
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array
+from kinesphere.data import Array, TopologicalModel
+from kinesphere.geometry.pair_distances import pair_distances
+from kinesphere.geometry.signature import FRAMES, evenly_spread
+from kinesphere.labelling.blocks import twins
 from kinesphere.labelling.problem import Labels
+from kinesphere.labelling.template import of_one_segment, template_of
 
 OTHER_SIDE = 0.02
 """m, by which a distance within a segment differs from that of the other side: 10 to 12 mm and
@@ -62,7 +66,7 @@ def denied_by_other_side(
     for i in range(n):
         for j in np.flatnonzero(kin[i] & (np.arange(n) > i) & (twin[i] != np.arange(n))):
             mates = told[i] & told[j]
-            mates[[i, j, twin[i], twin[j]]] = False
+            mates[np.array([i, j, twin[i], twin[j]])] = False
             wanted = np.stack([other[i, mates], other[j, mates]])
             here = np.stack([mean[i, mates], mean[j, mates]])
             known = np.isfinite(wanted + here).all(axis=0)
@@ -70,5 +74,29 @@ def denied_by_other_side(
                 continue
             off = [((x - wanted)[:, known] / OTHER_SIDE) ** 2 for x in (here, here[::-1])]
             if off[0].mean() > off[1].mean() + BETTER:
-                denied[[i, j]] = True
+                denied[i] = denied[j] = True
     return denied
+
+
+def one_sided(points: Array, labels: Labels, model: TopologicalModel) -> NDArray[np.bool_]:
+    """Return which points bear labels that the person's other side denies, (n_points,).
+
+    Parameters
+    ----------
+    points : (n_frames, n_points, 3) m
+        NaN where not seen.
+    labels : (n_points,)
+        Index into the model's, −1 for none; none twice.
+    """
+    given = np.flatnonzero(labels >= 0)
+    mean = np.full((len(model.labels), len(model.labels)), np.nan)
+    mean[np.ix_(labels[given], labels[given])] = pair_distances(
+        points[evenly_spread(len(points), FRAMES)][:, given]
+    ).mean
+    template = template_of(model)
+    into = [model.labels.index(label) for label in template.labels]
+    kin, twin = of_one_segment(model, template.labels), twins(model, template.labels)
+    told = symmetric_pairs(template.size * template.mean, kin, twin)
+    denied = np.zeros(len(model.labels) + 1, dtype=bool)
+    denied[into] = denied_by_other_side(mean[np.ix_(into, into)], told, kin, twin)
+    return denied[labels]
