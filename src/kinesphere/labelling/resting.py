@@ -19,12 +19,12 @@ RESTING = 0.03
 """A point rests if it spreads over less than this share of what the middle point spreads over in
 the same frames: props have 0.01 and less, feet that stand 0.005 to 0.2, what walks 0.8 and more."""
 
-FEWEST = 3
-"""Resting points that a body must lack to get any back: a foot that stands rests as a whole..."""
 FITTING = 1.8
-"""...and nats a pair by which each of them must fit its label better than nothing: feet that stand
-have 2.0 to 2.8, props in a missing marker's place 0.5 to 2.4, but seldom three of them."""
-
+"""Nats a pair by which a resting point must fit its label better than nothing: feet that stand have
+2.0 to 2.8, props in a missing marker's place 0.5 to 2.4."""
+FEWEST = 3
+"""Resting points that must fit for any to come in, or all of them where they are fewer: a foot that
+stands rests as a whole."""
 COMPANY = (4, 2, 0.15)
 """Nearest labels that a label of a resting point is seen beside, those of them whose points must
 stay about where they are as well, and what these may spread over, as above."""
@@ -96,24 +96,28 @@ def solved_apart(
         return solve(found, layout), every
     labels = np.full(len(every), -1, dtype=np.int64)
     labels[moving] = alone.labels
-    joined = _joined(found, layout, labels, np.flatnonzero(rests))
+    joined = _joined(points, found, layout, labels, np.flatnonzero(rests))
     if (joined == labels).all():
         return alone, moving
     return solve(found, layout, joined), every
 
 
-def _joined(found: Signature, layout: Layout, labels: Labels, rest: NDArray[np.intp]) -> Labels:
+def _joined(
+    points: Array, found: Signature, layout: Layout, labels: Labels, rest: NDArray[np.intp]
+) -> Labels:
     """Return labels with those that nobody bears on the resting points that fit them."""
     free = np.setdiff1d(np.arange(layout.template.n), labels)
-    if len(free) < FEWEST or len(rest) < FEWEST:
+    if not len(free):
         return labels
     scale = scale_by_labels(found, labels, layout.template)
     problem = problem_of(found, scale, layout.template)
     joined = problem.descend(labels, nullable=True, points=rest, targets=free)
     came = rest[joined[rest] >= 0]
     fit = -linear_terms(joined, problem.costs)[came, joined[came]] / max((joined >= 0).sum() - 1, 1)
-    joined[came[fit < FITTING]] = -1
-    return joined if (joined[rest] >= 0).sum() >= FEWEST else labels
+    alone = ~accompanied(points, joined, layout.near)[came]
+    joined[came[(fit < FITTING) | alone]] = -1
+    # where most of what rests are props, one of them fits by chance
+    return joined if (joined[rest] >= 0).sum() >= min(FEWEST, len(rest)) else labels
 
 
 def accompanied(points: Array, labels: Labels, near: Labels) -> NDArray[np.bool_]:
