@@ -89,7 +89,9 @@ def solved_apart(
     every = np.arange(points.shape[1])
     rests = resting(points)
     moving = np.flatnonzero(~rests)
-    if not rests.any() or len(moving) < LEAST_LABELS:
+    # one marker of a foot may rest for two seconds; nothing says it is a prop
+    few = len(every) <= layout.template.n and rests.sum() < FEWEST
+    if not rests.any() or few or len(moving) < LEAST_LABELS:
         return solve(found, layout), every
     alone = solve(signature(points[:, moving]), layout)
     if alone.converged == 0:
