@@ -17,13 +17,12 @@ from numpy.typing import NDArray
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.signature import Signature, scale_of, signature
 from kinesphere.labelling.bodies import bodies_of
-from kinesphere.labelling.doubting import doubt, shaken
-from kinesphere.labelling.exchanging import exchange_blocks, shake
 from kinesphere.labelling.held import held_to_distances
 from kinesphere.labelling.layout import Layout, Solved, layout_of
 from kinesphere.labelling.matching import Match, nothing
 from kinesphere.labelling.plausible import in_own_order, is_still, learnt_standing, plausible
-from kinesphere.labelling.problem import Labels, Problem, problem_of
+from kinesphere.labelling.problem import Labels, problem_of
+from kinesphere.labelling.resting import resting, solved_apart
 from kinesphere.labelling.same_person import (
     MIRROR_IMAGE,
     SKIN,
@@ -32,15 +31,11 @@ from kinesphere.labelling.same_person import (
     rigid_pairs,
     template_of_person,
 )
-from kinesphere.labelling.search import AGREEING, find_labels
 from kinesphere.labelling.seating import seated
-from kinesphere.labelling.shapes import alike
-from kinesphere.labelling.template import LEAST_LABELS, Template
+from kinesphere.labelling.solving import continued, finished, refined
+from kinesphere.labelling.template import LEAST_LABELS
 from kinesphere.labelling.verdict import MARGIN as MARGIN
 from kinesphere.labelling.verdict import verdict
-
-RESCALED = 0.01
-"""Change of scale after a first labelling from which on costs are computed anew."""
 
 
 def match_pair_statistics(
@@ -74,6 +69,8 @@ def match_pair_statistics(
         return _best_of([kept[body] for body in bodies], points, model)
     if start is None:
         kept = plausible(points, seen, layout.template.n)
+    else:
+        kept = kept[(start[kept] >= 0) | ~resting(points[:, kept])]
     if len(kept) < LEAST_LABELS:
         return nothing(
             n_points, f"{len(kept)} markers are seen; {LEAST_LABELS} at least can be told apart"
@@ -98,11 +95,12 @@ def match_pair_statistics(
             n_points, "nothing moves: markers are recognised by how they move with each other"
         )
     if start is None:
-        solved = _solve(found, layout)
+        solved, some = solved_apart(points[:, kept], found, layout)
+        kept = kept[some]
     else:
         back = np.full(len(model.labels) + 1, -1, dtype=np.int64)
         back[layout.into] = np.arange(layout.template.n)
-        solved = _continued(found, layout, back[start[kept]])
+        solved = continued(found, layout, back[start[kept]])
     return verdict(solved, layout, kept, n_points, model.name)
 
 
@@ -114,32 +112,6 @@ def _best_of(bodies: list[NDArray[np.intp]], points: Array, model: TopologicalMo
     sure = np.zeros(points.shape[1])
     labels[bodies[best]], sure[bodies[best]] = found[best].labels, found[best].confidence
     return replace(found[best], labels=labels, confidence=sure, bodies=len(bodies))
-
-
-def _solve(found: Signature, layout: Layout) -> Solved:
-    template = layout.template
-    share = (template.n - 1) / max(min(found.n, template.n) - 1, 1)
-    scale = scale_of(found.mean) * share
-    problem = problem_of(found, scale, template)
-    # where there are no more points than labels, all are first taken for markers
-    begin = alike(found.mean / scale, template.mean, layout.twin)
-    best = find_labels(problem, layout.moves, begin, nullable=found.n > template.n)
-    labels, rivals = best.labels, list(best.rivals)
-    rescaled = _scale_by_labels(found, labels, template)
-    if abs(rescaled / scale - 1) > RESCALED:
-        scale = rescaled
-        problem = problem_of(found, scale, template)
-        rivals = _descended(problem, rivals)
-        labels = min(rivals, key=lambda end: (end[0], end[1].tobytes()))[1]
-    labels, energy = _refined(problem, labels, layout)
-    solved = _finished(found, scale, layout, problem, labels, energy, rivals)
-    return solved._replace(converged=min(1.0, (best.agreeing - 1) / (AGREEING - 1)))
-
-
-def _descended(problem: Problem, rivals: list[tuple[float, Labels]]) -> list[tuple[float, Labels]]:
-    """Return where other labels end in a problem, and their energy there."""
-    ends = [problem.descend(labels, nullable=True) for _, labels in rivals]
-    return [(problem.energy(labels), labels) for labels in ends]
 
 
 def _of_person(found: Signature, layout: Layout, model: TopologicalModel) -> Solved | str | None:
@@ -154,67 +126,15 @@ def _of_person(found: Signature, layout: Layout, model: TopologicalModel) -> Sol
     at = {label: i for i, label in enumerate(names)}
     segments = [[at[x] for x in (*s.markers, *s.shared) if x in at] for s in model.segments]
     labels = seated(problem, found.mean, size * own.template.mean, rigid, SKIN, segments)
-    labels, energy = _refined(problem, labels, own)
+    labels, energy = refined(problem, labels, own)
     # true labels of a mirrored body disagree with its handedness, those found agree with it
     turned = problem.agreement(np.where(labels >= 0, layout.twin[labels], -1)) < 0
     if turned and is_mirrored(found.mean, labels, layout.twin, own.template, rigid):
         return MIRROR_IMAGE.format(model.name)
     if not is_the_person(found.mean, labels, own.template, rigid):
         return None
-    solved = _finished(found, size, own, problem, labels, energy, [])
+    solved = finished(found, size, own, problem, labels, energy, [])
     wanted = size * own.template.mean
     held = held_to_distances(problem, found.mean, solved.labels, wanted, rigid, segments)
     margins = np.where(held == solved.labels, solved.margins, MARGIN)
     return Solved(solved.problem, held, solved.problem.energy(held), margins, [])
-
-
-def _continued(found: Signature, layout: Layout, labels: Labels) -> Solved:
-    scale = _scale_by_labels(found, labels, layout.template)
-    problem = problem_of(found, scale, layout.template)
-    labels, energy = _refined(problem, labels, layout)
-    return _finished(found, scale, layout, problem, labels, energy, [])
-
-
-def _finished(
-    found: Signature,
-    scale: float,
-    layout: Layout,
-    problem: Problem,
-    labels: Labels,
-    energy: float,
-    rivals: list[tuple[float, Labels]],
-) -> Solved:
-    """Try unpaired markers on the other side, then doubt every label."""
-    template = layout.template
-    for label in np.flatnonzero(layout.twin == np.arange(template.n)):
-        turned = template.with_other_side(int(label), layout.twin)
-        other = problem_of(found, scale, turned, (problem, int(label)))
-        if other.energy(labels) < energy - 1e-6:
-            template, problem = turned, other
-            labels, energy = _refined(problem, labels, layout)
-            rivals = _descended(problem, rivals)
-    labels, energy, margins = doubt(problem, labels, layout.near, layout.twin, nullable=True)
-    better, _, margins = shaken(problem, labels, energy, margins, layout.near)
-    if (better != labels).any():
-        labels = problem.descend(better, nullable=True)
-        labels, energy, margins = doubt(problem, labels, layout.near, layout.twin, nullable=True)
-    return Solved(problem, labels, energy, margins, rivals)
-
-
-def _refined(problem: Problem, labels: Labels, layout: Layout) -> tuple[Labels, float]:
-    rng = np.random.default_rng(0)
-    labels = problem.descend(labels, nullable=True)
-    labels, _ = exchange_blocks(problem, labels, layout.moves, nullable=True)
-    labels, _ = shake(problem, labels, layout.near, rng, nullable=True)
-    return exchange_blocks(problem, labels, layout.moves, nullable=True)
-
-
-def _scale_by_labels(found: Signature, labels: Labels, template: Template) -> float:
-    """Return the scale at which the labelled distances are on the whole the template's."""
-    given = np.flatnonzero(labels >= 0)
-    rows, columns = np.triu_indices(len(given), 1)
-    seen = found.mean[given[rows], given[columns]]
-    expected = template.mean[labels[given[rows]], labels[given[columns]]]
-    ratio = seen / expected
-    ratio = ratio[np.isfinite(ratio)]
-    return float(np.median(ratio)) if len(ratio) else scale_of(found.mean)
