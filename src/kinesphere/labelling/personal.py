@@ -9,7 +9,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.signature import signature
@@ -24,13 +23,11 @@ from kinesphere.labelling.problem import Labels, problem_of
 from kinesphere.labelling.resting import accompanied
 from kinesphere.labelling.runs import points_of
 from kinesphere.labelling.search import nearest_labels
-from kinesphere.labelling.sides import OTHER_SIDE, symmetric_pairs
 from kinesphere.labelling.template import (
     DEVIATION_FLOOR,
     DEVIATION_SHARE,
     LEAST_LABELS,
     Template,
-    of_one_segment,
     template_of,
 )
 
@@ -42,8 +39,6 @@ PRESENT = 0.5
 """Share of a stretch that a point must be seen in: two pieces of one marker are not both."""
 LEAST_CONFIDENCE = 0.3
 """Confidence from which on a label is given here."""
-UNKNOWN = 0.5
-"""The same for a label that nobody bears yet: it has no distances that could deny it."""
 FITTING = 1.5
 """Nats a pair by which a piece must fit its label better than nothing: right ones 1.5 to 2.8."""
 SEED = 20100517
@@ -60,22 +55,13 @@ class _Person(NamedTuple):
     """(n_template_labels,) index into the model's labels."""
 
 
-def personal_template(
-    template: Template,
-    points: Array,
-    kin: NDArray[np.bool_] | None = None,
-    twin: Labels | None = None,
-) -> tuple[Template, float]:
+def personal_template(template: Template, points: Array) -> tuple[Template, float]:
     """Return a layout's template with the person's own distances where known, and their scale.
 
     Parameters
     ----------
     points : (n_frames, n_template_labels, 3) m
         What is labelled so far, NaN elsewhere.
-    kin : (n_template_labels, n_template_labels)
-        Labels of one segment, whose distances the other side may tell; none if left out.
-    twin : (n_template_labels,)
-        The label of the other side; unpaired ones are their own.
 
     Returns
     -------
@@ -90,16 +76,10 @@ def personal_template(
     scale = float(np.median(own.mean[known] / template.mean[known]))
     std = np.sqrt(np.maximum(own.deviation**2 - FLOOR**2, 0.0)) / scale
     own_variance = (FLOOR / scale) ** 2 + DEVIATION_SHARE * std**2
-    mean, variance = template.mean, template.variance
-    if kin is not None and twin is not None:
-        other = np.ix_(twin, twin)
-        told = symmetric_pairs(template.size * template.mean, kin, twin) & known[other]
-        mean = np.where(told, own.mean[other] / scale, mean)
-        variance = np.where(told, (OTHER_SIDE / scale) ** 2 + own_variance[other], variance)
     personal = replace(
         template,
-        mean=np.where(known, own.mean / scale, mean),
-        variance=np.where(known, own_variance, variance),
+        mean=np.where(known, own.mean / scale, template.mean),
+        variance=np.where(known, own_variance, template.variance),
         log_std=np.where(known, np.log(std + DEVIATION_FLOOR), template.log_std),
     )
     return personal, scale
@@ -115,15 +95,13 @@ def recognise_rest(
     """
     template = template_of(model)
     into = np.array([model.labels.index(x) for x in template.labels], dtype=np.int64)
-    kin, twin = of_one_segment(model, template.labels), twins(model, template.labels)
-    personal, scale = personal_template(template, state.points[:, into], kin, twin)
-    near = nearest_labels(personal.mean)
-    known = np.asarray(np.isfinite(state.points[:, into, 0]).any(axis=0))
+    personal, scale = personal_template(template, state.points[:, into])
+    near, twin = nearest_labels(personal.mean), twins(model, template.labels)
     person = _Person(personal, scale, near, twin, into)
     least = max(2, round(SHORTEST_S * rate))
     loose = [k for k, of in enumerate(state.labels) if of < 0 and length_of(state, k) >= least]
     points = points_of(markers, [state.tracks[k] for k in loose])
-    seen = np.asarray(np.isfinite(points[:, :, 0]))
+    seen = np.isfinite(points[:, :, 0])
     tried: set[int] = set()
     given = False
     for k in sorted(loose, key=lambda k: (-length_of(state, k), k)):
@@ -135,8 +113,7 @@ def recognise_rest(
         tried |= {loose[x] for x in here}
         labels, sure = _assigned(state.points[start:end, into], points[start:end, here], person)
         for x, label, c in zip(here, labels, sure, strict=True):
-            least_sure = LEAST_CONFIDENCE if known[label] else UNKNOWN
-            if label >= 0 and c >= max(least_confidence, least_sure):
+            if label >= 0 and c >= max(least_confidence, LEAST_CONFIDENCE):
                 give(state, markers, loose[x], int(into[label]), float(c))
                 given = given or state.labels[loose[x]] >= 0
     return given

@@ -10,7 +10,6 @@ from kinesphere.labelling.labelled import Labelled, give, length_of, take
 from kinesphere.labelling.matching import Labeller, Match, nothing
 from kinesphere.labelling.pair_statistics import match_pair_statistics
 from kinesphere.labelling.runs import Track, points_of
-from kinesphere.labelling.sides import one_sided
 
 WINDOWS_S = (16.0, 8.0, 4.0)
 """s, lengths of the windows tried: the longer, the more motion; the shorter, the more is whole."""
@@ -31,10 +30,6 @@ WHOLE = 1.5
 LASTING = 0.15
 """Share of the recording that a track without label must last to be looked at then: pieces of one
 marker that are never seen together look like two."""
-
-SURER = 0.5
-"""Confidence that a label needs then to come or to move where the other side denies it: a wrong one
-teaches its distances."""
 
 
 def recognised(
@@ -145,12 +140,11 @@ def recognise_again(
     """Recognise the body once more: what has a label as one point each, beside long tracks.
 
     They start from the labels they have. A label may go to another point as a whole, and markers
-    that the first window did not show come in, unless the other side denies what is not sure.
-    Return whether anything changed.
+    that the first window did not show come in. Return whether anything changed.
     """
     held = sorted({label for label in state.labels if label >= 0})
-    lasting = LASTING * len(markers)
-    loose = [k for k, of in enumerate(state.labels) if of < 0 and length_of(state, k) >= lasting]
+    least = LASTING * len(markers)
+    loose = [k for k, of in enumerate(state.labels) if of < 0 and length_of(state, k) >= least]
     points = np.concatenate(
         [state.points[:, held], points_of(markers, [state.tracks[k] for k in loose])], axis=1
     )
@@ -159,10 +153,8 @@ def recognise_again(
     if match.note:
         return False
     state.fit = match.fit
-    new = np.where(match.confidence >= least_confidence, match.labels, -1)
-    unsure = match.confidence < SURER
-    stays = np.append(held, np.full(len(loose), -1)) == new
-    new[one_sided(points, new, model) & unsure & ~stays] = -1
+    sure = match.confidence >= least_confidence
+    new = np.where(sure, match.labels, -1)
     into = dict(zip(held, new[: len(held)].tolist(), strict=True))
     before = list(zip(state.labels, state.confidence, strict=True))
     changed = any(old != label for old, label in into.items()) or (new[len(held) :] >= 0).any()

@@ -8,10 +8,8 @@ and forwards in time. A track that stops fitting its label is cut.
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from kinesphere.data import Array, TopologicalModel
-from kinesphere.labelling.blocks import twins
 from kinesphere.labelling.exchanged import exchange_labels
 from kinesphere.labelling.labelled import Labelled, give
 from kinesphere.labelling.matching import Labeller
@@ -89,7 +87,7 @@ def label_through_time(
         if label >= 0 and sure >= least_confidence and state.labels[k] < 0:
             give(state, markers, int(k), int(label), float(sure))
     fixed = {k for k, track in enumerate(tracks) if track[0].column in seeds}
-    kin = _kin(model)
+    kin = of_one_segment(model, model.labels)
     for _ in range(ROUNDS):
         before = sum(label >= 0 for label in state.labels)
         if not before:
@@ -112,12 +110,6 @@ def label_through_time(
         recheck(state, markers, fixed)
         propagate(state, markers, rate, fixed, kin, late=True)
     return state
-
-
-def _kin(model: TopologicalModel) -> NDArray[np.bool_]:
-    """Return which labels a point may be taken for: those of its segment, or of its twin's."""
-    together = of_one_segment(model, model.labels)
-    return np.asarray(together | together[:, twins(model, model.labels)])
 
 
 def _tracks(
