@@ -30,7 +30,7 @@ def model(mirror=(("LA", "RA"), ("LP", "RP"))):
 
 def pelvis():
     shape = np.array(list(PELVIS.values()))
-    return {"pelvis": Body("pelvis", None, tuple(PELVIS), shape, np.full(len(shape), 0.001))}
+    return Body("pelvis", None, tuple(PELVIS), shape, np.full(len(shape), 0.001))
 
 
 def hips(left, right, known=(1e6, 1e6)):
@@ -75,7 +75,7 @@ def test_what_both_say_is_surer():
 
 @pytest.mark.parametrize("mirror", [(), (("LA", "RA"),)])
 def test_one_pair_tells_no_plane(mirror):
-    assert mirror_plane(pelvis()["pelvis"], model(mirror)) is None
+    assert mirror_plane(pelvis(), model(mirror)) is None
     assert evened(hips(LEFT, RIGHT), pelvis(), model(mirror), SPREAD) == {}
 
 
