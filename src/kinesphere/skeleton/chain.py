@@ -8,6 +8,7 @@ from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.limb_axes import find_axes
 from kinesphere.skeleton.limb_body import measure_limb, measure_root
 from kinesphere.skeleton.limb_joint import FoundJoint, find_joint
+from kinesphere.skeleton.link_worth import check_links, no_surer_than
 from kinesphere.skeleton.linked import LinkedJoint, fit_linked
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.settings import SkeletonSettings
@@ -41,9 +42,13 @@ def measure_chain(
     if not settings.link_limbs:
         return bodies, joints
     linked = fit_linked(tree, bodies, joints, sample, settings)
-    if not linked:
-        return bodies, joints
-    return _measure_outward(bodies, joints, tree, model, sample, settings, linked)
+    if linked:
+        kept, apart = check_links(tree, bodies, joints, linked, sample, settings)
+        if kept:
+            bodies, joints = _measure_outward(bodies, joints, tree, model, sample, settings, kept)
+        for limb, off in apart.items():
+            joints[limb] = replace(joints[limb], fit=no_surer_than(joints[limb].fit, off))
+    return bodies, joints
 
 
 def _measure_outward(

@@ -82,7 +82,7 @@ def fit_linked(
     linked: dict[str, LinkedJoint] = {}
     for group in find_groups(tree, bodies):
         if all(joints[limb].source in (BETWEEN, STEADY) for limb in group[1:]):
-            linked |= _fit_group(group, bodies, joints, sample, settings)
+            linked |= fit_group(group, bodies, joints, sample, settings)
     return linked
 
 
@@ -105,14 +105,14 @@ def find_groups(tree: Tree, bodies: dict[str, Body]) -> list[tuple[str, ...]]:
     return groups
 
 
-def _fit_group(
+def fit_group(
     group: tuple[str, ...],
     bodies: dict[str, Body],
     joints: dict[str, MeasuredJoint],
     sample: dict[str, Array],
     settings: SkeletonSettings,
 ) -> dict[str, LinkedJoint]:
-    """Fit one group; nothing where too little of it is seen together."""
+    """Fit a group of `find_groups`; nothing where too little of it is seen together."""
     limbs = [bodies[limb] for limb in group]
     measured = [joints[limb] for limb in group[1:]]
     rotations = np.stack([body.rotations for body in limbs], axis=1)
