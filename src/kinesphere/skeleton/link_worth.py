@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,8 +35,9 @@ def check_links(
 ) -> tuple[dict[str, LinkedJoint], dict[str, float]]:
     """Leave out groups that are measured limb by limb as well or better.
 
-    Both ways are gone on each half of the time. A group is left to itself where a half tells no
-    linked joints, or where the halves' centres are farther apart by `WORSE`.
+    Both ways are gone on each half of the time. Limbs stay apart where a half has linked joints
+    stray, or where halves have them farther apart than limb by limb by `WORSE`. A half that moves
+    too little to tell them says nothing.
 
     Parameters
     ----------
@@ -54,13 +56,16 @@ def check_links(
         if not all(limb in linked for limb in group[1:]):
             continue
         halves = [
-            _centres(group, tree, bodies, joints, sample, settings, part)
+            _half(group, tree, bodies, joints, sample, settings, part)
             for part in (slice(middle), slice(middle, None))
         ]
-        alone, together = np.linalg.norm(halves[1] - halves[0], axis=2)
-        link = bool(np.linalg.norm(together) <= WORSE * np.linalg.norm(alone))  # NaN: no
-        kept |= {limb: linked[limb] for limb in group[1:] if link}
-        told = zip(group[1:], together if link else alone, strict=True)
+        alone, together = np.linalg.norm(halves[1].centres - halves[0].centres, axis=2)
+        worse = np.linalg.norm(together) > WORSE * np.linalg.norm(alone)  # silent ones are not
+        if worse or any(half.strays for half in halves):
+            together = alone
+        else:
+            kept |= {limb: linked[limb] for limb in group[1:]}
+        told = zip(group[1:], np.where(np.isfinite(together), together, alone), strict=True)
         apart |= {limb: float(off) for limb, off in told if np.isfinite(off)}
     return kept, apart
 
@@ -79,7 +84,14 @@ def _widened(covariance: Array, apart: float) -> Array:
     return covariance + missing / 3 * np.eye(3)
 
 
-def _centres(
+class _Half(NamedTuple):
+    centres: Array
+    """(2, n_joints, 3) m, limb by limb and fitted together; NaN where that is not told."""
+    strays: bool
+    """Whether fitted together they are where no joint can be."""
+
+
+def _half(
     group: Group,
     tree: Tree,
     bodies: dict[str, Body],
@@ -87,13 +99,10 @@ def _centres(
     sample: dict[str, Array],
     settings: SkeletonSettings,
     part: slice,
-) -> Array:
-    """Return the joints of a group, limb by limb and fitted together, on a part of the sample.
+) -> _Half:
+    """Return the joints of a group by a part of the sample.
 
-    Returns
-    -------
-    (2, n_joints, 3) m, in the limb beside the joint that has a pose of its own, as it is in the
-    whole sample; NaN where the part does not tell it.
+    They are in the limb beside that has a pose of its own, as it is in the whole sample.
     """
     some = {label: markers[part] for label, markers in sample.items()}
     limbs, found = {group[0]: _part_of(bodies[group[0]], part)}, {}
@@ -102,16 +111,16 @@ def _centres(
         joint = find_joint(model, limbs[model.parent], tree.markers[limb], some, settings)
         found[limb] = joint.measured
         limbs[limb] = measure_limb(joint, limbs[model.parent], tree, some, settings, {})
-    linked = fit_group(group, limbs, found, some, settings)
+    fit = fit_group(group, limbs, found, some, settings)
     centres = np.full((2, len(group) - 1, 3), np.nan)
     for i, (limb, joint) in enumerate(found.items()):
         parent = limbs[joint.model.parent]
         alone = out_of_frame(parent.rotations, parent.shifts, joint.fit.centre[None])[:, 0]
         by = _part_of(bodies[group[0] if parent.name == group[0] else limb], part)
         centres[0, i] = _usual(by, alone)
-        if limb in linked:
-            centres[1, i] = _usual(by, linked[limb].world)
-    return centres
+        if fit is not None and fit.firm:
+            centres[1, i] = _usual(by, fit.joints[limb].world)
+    return _Half(centres, fit is not None and fit.strays)
 
 
 def _part_of(body: Body, part: slice) -> Body:

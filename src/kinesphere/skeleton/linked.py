@@ -60,6 +60,17 @@ class LinkedJoint(NamedTuple):
         )
 
 
+class GroupFit(NamedTuple):
+    """Limbs that were fitted together."""
+
+    joints: dict[str, LinkedJoint]
+    """Child limb → its joint."""
+    strays: bool
+    """Whether a joint is where none of these limbs can be."""
+    firm: bool
+    """Whether every joint is known in two directions; a hinge is open along its axis."""
+
+
 def fit_linked(
     tree: Tree,
     bodies: dict[str, Body],
@@ -82,7 +93,9 @@ def fit_linked(
     linked: dict[str, LinkedJoint] = {}
     for group in find_groups(tree, bodies):
         if all(joints[limb].source in (BETWEEN, STEADY) for limb in group[1:]):
-            linked |= fit_group(group, bodies, joints, sample, settings)
+            fit = fit_group(group, bodies, joints, sample, settings)
+            if fit is not None and fit.firm and not fit.strays:
+                linked |= fit.joints
     return linked
 
 
@@ -111,20 +124,20 @@ def fit_group(
     joints: dict[str, MeasuredJoint],
     sample: dict[str, Array],
     settings: SkeletonSettings,
-) -> dict[str, LinkedJoint]:
-    """Fit a group of `find_groups`; nothing where too little of it is seen together."""
+) -> GroupFit | None:
+    """Fit a group of `find_groups`; None where too little of it is seen or moves."""
     limbs = [bodies[limb] for limb in group]
     measured = [joints[limb] for limb in group[1:]]
     rotations = np.stack([body.rotations for body in limbs], axis=1)
     known = np.isfinite(rotations).all(axis=(1, 2, 3)) & is_seen(limbs[0].shifts)
     if known.sum() < FEW or not all(is_seen(body.shape).any() for body in limbs):
-        return {}
+        return None
     moved = [
         _moved(rotations[known], parent, child)
         for child, parent in enumerate(parents_in(group, bodies)[1:], start=1)
     ]
     if min(moved) < np.deg2rad(settings.min_range_deg):
-        return {}  # skin is all that moves there
+        return None  # skin is all that moves there
     start = linkage_of(group, bodies, joints, rotations[known], limbs[0].shifts[known])
     leads = np.array([j.expected - j.fit.centre for j in measured])
     expected = start.centres + np.vstack([np.zeros(3), leads])
@@ -143,13 +156,10 @@ def fit_group(
     ]
     fit = min(fits, key=lambda one: one.scale)
     off = np.linalg.norm(fit.linkage.centres - expected, axis=1)[1:]
-    if not (off < STRAYED * np.array([j.spread for j in measured])).all():
-        return {}  # not finite, or where no joint of these limbs can be
-    # known in the second direction, too: a hinge is open along its axis
-    firm = np.linalg.eigvalsh(fit.information[1:])[:, 1]
-    if (firm < 1 / (settings.undetermined_mm * 1e-3) ** 2).any():
-        return {}
-    return _joints(group, fit, known, n_poses)
+    near = off < STRAYED * np.array([j.spread for j in measured])  # not so where it is not finite
+    told = np.linalg.eigvalsh(fit.information[1:])[:, 1]
+    firm = told >= 1 / (settings.undetermined_mm * 1e-3) ** 2
+    return GroupFit(_joints(group, fit, known, n_poses), not near.all(), bool(firm.all()))
 
 
 def _starts(
