@@ -9,7 +9,8 @@ from kinesphere.skeleton.limb_axes import find_axes
 from kinesphere.skeleton.limb_body import measure_limb, measure_root
 from kinesphere.skeleton.limb_joint import FoundJoint, find_joint
 from kinesphere.skeleton.link_worth import check_links, no_surer_than
-from kinesphere.skeleton.linked import LinkedJoint, fit_linked
+from kinesphere.skeleton.linked import fit_linked
+from kinesphere.skeleton.linked_joint import LinkedJoint
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.symmetry import evened

@@ -12,7 +12,7 @@ from kinesphere.geometry.rotations import mean_rotation
 from kinesphere.skeleton.body import NOISE, Body, measure_shape, robust_rms
 from kinesphere.skeleton.limb_joint import FoundJoint
 from kinesphere.skeleton.lines import measure_line
-from kinesphere.skeleton.linked import LinkedJoint
+from kinesphere.skeleton.linked_joint import LinkedJoint
 from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.poses import Neighbour, fit_poses
 from kinesphere.skeleton.settings import SkeletonSettings

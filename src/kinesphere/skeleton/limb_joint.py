@@ -12,7 +12,7 @@ from kinesphere.geometry.rigid import RigidFit, into_frame
 from kinesphere.geometry.skin import skin_noise
 from kinesphere.skeleton.body import NOISE, Body, measure_shape
 from kinesphere.skeleton.landmarks import expected_centre
-from kinesphere.skeleton.linked import LinkedJoint
+from kinesphere.skeleton.linked_joint import LinkedJoint
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.settings import SkeletonSettings

@@ -14,7 +14,8 @@ from kinesphere.skeleton.averages import median_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.limb_body import measure_limb
 from kinesphere.skeleton.limb_joint import find_joint
-from kinesphere.skeleton.linked import LinkedJoint, find_groups, fit_group
+from kinesphere.skeleton.linked import find_groups, fit_group
+from kinesphere.skeleton.linked_joint import LinkedJoint
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree

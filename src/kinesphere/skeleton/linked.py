@@ -5,16 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.data import Array, Mask
-from kinesphere.geometry.centres import CentreFit, with_expectation
 from kinesphere.geometry.linkage import Linkage
 from kinesphere.geometry.linkage_fit import LinkageFit, fit_linkage
 from kinesphere.geometry.range_of_motion import range_of_motion
-from kinesphere.geometry.rigid import into_frame
-from kinesphere.geometry.rotations import mean_rotation
 from kinesphere.geometry.vectors import is_seen, lengths
 from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
+from kinesphere.skeleton.linked_joint import LinkedJoint
 from kinesphere.skeleton.linked_poses import linkage_of, markers_of, parents_in
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.settings import SkeletonSettings
@@ -28,36 +26,6 @@ WAYS = 41
 """Places tried on a line."""
 FEW = 30
 """Frames that show every limb of a group below which it stays as it was measured."""
-
-
-class LinkedJoint(NamedTuple):
-    """A joint that a group of limbs told together."""
-
-    world: Array
-    """(n_sample, 3) m; NaN where a limb of the group is unseen."""
-    frames: Array
-    """(n_sample, 3, 3) the parent's poses as the group has them; NaN alike."""
-    information: Array
-    """(3, 3) 1/m² in the parent as the group has it."""
-    noise: float
-    """m."""
-    n_poses: int
-
-    def seen_from(self, parent: Body, spread: float) -> CentreFit | None:
-        """Return the joint in its parent, however that was measured; None where it never shows."""
-        local = into_frame(parent.rotations, parent.shifts, self.world[:, None])[:, 0]
-        turns = np.swapaxes(parent.rotations, 1, 2) @ self.frames
-        known = is_seen(local) & np.isfinite(turns).all(axis=(1, 2))
-        if not known.any():
-            return None
-        turn = mean_rotation(turns[known])
-        return with_expectation(
-            median_seen(local[known]),
-            turn @ self.information @ turn.T,
-            spread,
-            self.noise,
-            self.n_poses,
-        )
 
 
 class GroupFit(NamedTuple):
