@@ -114,9 +114,9 @@ def _half(
         limbs[limb] = measure_limb(joint, limbs[model.parent], tree, some, settings, {})
     fit = fit_group(group, limbs, found, some, settings)
     centres = np.full((2, len(group) - 1, 3), np.nan)
-    for i, (limb, joint) in enumerate(found.items()):
-        parent = limbs[joint.model.parent]
-        alone = out_of_frame(parent.rotations, parent.shifts, joint.fit.centre[None])[:, 0]
+    for i, (limb, measured) in enumerate(found.items()):
+        parent = limbs[measured.model.parent]
+        alone = out_of_frame(parent.rotations, parent.shifts, measured.fit.centre[None])[:, 0]
         by = _part_of(bodies[group[0] if parent.name == group[0] else limb], part)
         centres[0, i] = _usual(by, alone)
         if fit is not None and fit.firm:
