@@ -11,7 +11,7 @@ from kinesphere.geometry.range_of_motion import range_of_motion
 from kinesphere.skeleton import SkeletonSettings
 from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.body import measure_shape
-from kinesphere.skeleton.chain import joint_noise
+from kinesphere.skeleton.limb_body import joint_noise
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.poses import borrowing
 from kinesphere.skeleton.report import verdict_on

@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from kinesphere.data import JointModel, Segment, TopologicalModel
+from kinesphere.data import JointModel, Recording, Segment, TopologicalModel
 from kinesphere.geometry.centres import with_expectation
+from kinesphere.geometry.rotations import rotation_exp
+from kinesphere.skeleton import chain, fit_skeleton
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.measured import MeasuredJoint
+from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.symmetry import evened, mirror_plane
 
 PELVIS = {
@@ -30,7 +33,7 @@ def model(mirror=(("LA", "RA"), ("LP", "RP"))):
 
 def pelvis():
     shape = np.array(list(PELVIS.values()))
-    return {"pelvis": Body("pelvis", None, tuple(PELVIS), shape, np.full(len(shape), 0.001))}
+    return Body("pelvis", None, tuple(PELVIS), shape, np.full(len(shape), 0.001))
 
 
 def hips(left, right, known=(1e6, 1e6)):
@@ -75,7 +78,7 @@ def test_what_both_say_is_surer():
 
 @pytest.mark.parametrize("mirror", [(), (("LA", "RA"),)])
 def test_one_pair_tells_no_plane(mirror):
-    assert mirror_plane(pelvis()["pelvis"], model(mirror)) is None
+    assert mirror_plane(pelvis(), model(mirror)) is None
     assert evened(hips(LEFT, RIGHT), pelvis(), model(mirror), SPREAD) == {}
 
 
@@ -83,3 +86,27 @@ def test_one_hip_alone_is_left():
     joints = hips(LEFT, RIGHT)
     del joints["right_thigh"]
     assert evened(joints, pelvis(), model(), SPREAD) == {}
+
+
+def test_no_joint_is_measured_twice_for_it(rng, monkeypatch):
+    places = [np.array(place) for place in PELVIS.values()]
+    markers = [np.tile(place, (300, 1)) for place in places]
+    tree = model()
+    for centre in (LEFT, RIGHT):
+        turns = rotation_exp(0.5 * np.cumsum(rng.normal(size=(300, 3)), axis=0) / 17)
+        skin = 0.005 * rng.normal(size=(300, 3))
+        markers.append(centre + turns @ np.array([0.02, -0.3, 0.0]) + skin)
+    labels = (*PELVIS, "L1", "R1")
+    recording = Recording(markers=np.stack(markers, axis=1), labels=labels, rate=100.0)
+    measured, find = [], chain.find_joint
+
+    def counted(joint, *arguments):
+        measured.append(joint.name)
+        return find(joint, *arguments)
+
+    monkeypatch.setattr(chain, "find_joint", counted)
+    even = fit_skeleton(recording, tree).skeleton
+    assert measured == ["left_hip", "right_hip"]
+    apart = fit_skeleton(recording, tree, SkeletonSettings(even_hips_mm=0.0)).skeleton
+    for hip in measured[:2]:
+        assert (even.joint(hip).centre_in_parent != apart.joint(hip).centre_in_parent).any()

@@ -5,16 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.data import Array, Mask
-from kinesphere.geometry.centres import CentreFit, with_expectation
 from kinesphere.geometry.linkage import Linkage
 from kinesphere.geometry.linkage_fit import LinkageFit, fit_linkage
 from kinesphere.geometry.range_of_motion import range_of_motion
-from kinesphere.geometry.rigid import into_frame
-from kinesphere.geometry.rotations import mean_rotation
 from kinesphere.geometry.vectors import is_seen, lengths
 from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
+from kinesphere.skeleton.linked_joint import LinkedJoint
 from kinesphere.skeleton.linked_poses import linkage_of, markers_of, parents_in
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.settings import SkeletonSettings
@@ -30,34 +28,15 @@ FEW = 30
 """Frames that show every limb of a group below which it stays as it was measured."""
 
 
-class LinkedJoint(NamedTuple):
-    """A joint that a group of limbs told together."""
+class GroupFit(NamedTuple):
+    """Limbs that were fitted together."""
 
-    world: Array
-    """(n_sample, 3) m; NaN where a limb of the group is unseen."""
-    frames: Array
-    """(n_sample, 3, 3) the parent's poses as the group has them; NaN alike."""
-    information: Array
-    """(3, 3) 1/m² in the parent as the group has it."""
-    noise: float
-    """m."""
-    n_poses: int
-
-    def seen_from(self, parent: Body, spread: float) -> CentreFit | None:
-        """Return the joint in its parent, however that was measured; None where it never shows."""
-        local = into_frame(parent.rotations, parent.shifts, self.world[:, None])[:, 0]
-        turns = np.swapaxes(parent.rotations, 1, 2) @ self.frames
-        known = is_seen(local) & np.isfinite(turns).all(axis=(1, 2))
-        if not known.any():
-            return None
-        turn = mean_rotation(turns[known])
-        return with_expectation(
-            median_seen(local[known]),
-            turn @ self.information @ turn.T,
-            spread,
-            self.noise,
-            self.n_poses,
-        )
+    joints: dict[str, LinkedJoint]
+    """Child limb → its joint."""
+    strays: bool
+    """Whether a joint is where none of these limbs can be."""
+    firm: bool
+    """Whether every joint is known in two directions; a hinge is open along its axis."""
 
 
 def fit_linked(
@@ -82,7 +61,9 @@ def fit_linked(
     linked: dict[str, LinkedJoint] = {}
     for group in find_groups(tree, bodies):
         if all(joints[limb].source in (BETWEEN, STEADY) for limb in group[1:]):
-            linked |= _fit_group(group, bodies, joints, sample, settings)
+            fit = fit_group(group, bodies, joints, sample, settings)
+            if fit is not None and fit.firm and not fit.strays:
+                linked |= fit.joints
     return linked
 
 
@@ -105,26 +86,26 @@ def find_groups(tree: Tree, bodies: dict[str, Body]) -> list[tuple[str, ...]]:
     return groups
 
 
-def _fit_group(
+def fit_group(
     group: tuple[str, ...],
     bodies: dict[str, Body],
     joints: dict[str, MeasuredJoint],
     sample: dict[str, Array],
     settings: SkeletonSettings,
-) -> dict[str, LinkedJoint]:
-    """Fit one group; nothing where too little of it is seen together."""
+) -> GroupFit | None:
+    """Fit a group of `find_groups`; None where too little of it is seen or moves."""
     limbs = [bodies[limb] for limb in group]
     measured = [joints[limb] for limb in group[1:]]
     rotations = np.stack([body.rotations for body in limbs], axis=1)
     known = np.isfinite(rotations).all(axis=(1, 2, 3)) & is_seen(limbs[0].shifts)
     if known.sum() < FEW or not all(is_seen(body.shape).any() for body in limbs):
-        return {}
+        return None
     moved = [
         _moved(rotations[known], parent, child)
         for child, parent in enumerate(parents_in(group, bodies)[1:], start=1)
     ]
     if min(moved) < np.deg2rad(settings.min_range_deg):
-        return {}  # skin is all that moves there
+        return None  # skin is all that moves there
     start = linkage_of(group, bodies, joints, rotations[known], limbs[0].shifts[known])
     leads = np.array([j.expected - j.fit.centre for j in measured])
     expected = start.centres + np.vstack([np.zeros(3), leads])
@@ -143,13 +124,10 @@ def _fit_group(
     ]
     fit = min(fits, key=lambda one: one.scale)
     off = np.linalg.norm(fit.linkage.centres - expected, axis=1)[1:]
-    if not (off < STRAYED * np.array([j.spread for j in measured])).all():
-        return {}  # not finite, or where no joint of these limbs can be
-    # known in the second direction, too: a hinge is open along its axis
-    firm = np.linalg.eigvalsh(fit.information[1:])[:, 1]
-    if (firm < 1 / (settings.undetermined_mm * 1e-3) ** 2).any():
-        return {}
-    return _joints(group, fit, known, n_poses)
+    near = off < STRAYED * np.array([j.spread for j in measured])  # not so where it is not finite
+    told = np.linalg.eigvalsh(fit.information[1:])[:, 1]
+    firm = told >= 1 / (settings.undetermined_mm * 1e-3) ** 2
+    return GroupFit(_joints(group, fit, known, n_poses), not near.all(), bool(firm.all()))
 
 
 def _starts(

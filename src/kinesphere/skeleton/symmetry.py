@@ -18,7 +18,7 @@ FEWEST = 2
 
 def evened(
     joints: Mapping[str, MeasuredJoint],
-    bodies: Mapping[str, Body],
+    pelvis: Body,
     model: TopologicalModel,
     spread: float,
 ) -> dict[str, CentreFit]:
@@ -30,7 +30,7 @@ def evened(
     Parameters
     ----------
     joints
-        Child limb → its joint.
+        Child limb → its joint in the pelvis, or whatever limb it is that has both hips.
     spread
         m in each direction, of one hip from the other's mirror image: how unlike the sides of a
         pelvis are, and how unlike the markers that tell the mirror plane were put on.
@@ -45,9 +45,7 @@ def evened(
         if left not in at or right not in at:
             continue
         one, other = joints[at[left]], joints[at[right]]
-        if one.model.parent != other.model.parent:
-            continue
-        plane = mirror_plane(bodies[one.model.parent], model)
+        plane = mirror_plane(pelvis, model)
         if plane is None:
             continue
         for here, there in ((one, other), (other, one)):
