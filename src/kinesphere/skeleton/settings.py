@@ -84,9 +84,9 @@ class SkeletonSettings:
         "landmark tells their joints",
     )
     even_hips_mm: float = setting(
-        7.0,
-        "how unlike a hip and the other one's mirror image in the pelvis' markers may be, in each "
-        "direction; 0 leaves both to themselves",
+        0.0,
+        "of people known to be even: how unlike a hip and the other one's mirror image in the "
+        "pelvis' markers may be, in each direction, say 7; 0 leaves both to themselves",
         unit="mm",
         low=0.0,
         high=1000.0,
