@@ -13,6 +13,9 @@ from kinesphere.labelling.recognition import LASTING
 from kinesphere.labelling.runs import Run
 from kinesphere.labelling.settings import LabellingSettings
 
+MOST = 0.95
+"""Share of its frames from which on a label is said to move like another, with no share named."""
+
 
 class _Verdict(NamedTuple):
     """What the pieces of one column that can be judged say about its label."""
@@ -23,6 +26,8 @@ class _Verdict(NamedTuple):
     """The label it moves like, empty where that is its own."""
     spans_s: list[Json]
     """Start and end of what moves like another."""
+    frames: int = 0
+    """How many those are."""
 
 
 def checked(
@@ -69,7 +74,11 @@ def checked(
         warnings=(
             *state.notes,
             *([f"could not be judged: {', '.join(map(str, unknown))}"] if unknown else ()),
-            *(f"{name} moves like {v.other} of model {model.name}" for name, v in wrong.items()),
+            *(
+                f"{name} moves like {found.other} of model {model.name}"
+                + _when(found, recording, known[name])
+                for name, found in wrong.items()
+            ),
         ),
     )
     return replace(recording, confidence=sure, history=(*recording.history, step))
@@ -96,4 +105,10 @@ def _verdict(
         return _Verdict(judged.get(name, np.nan), "", [])
     other = max(others, key=lambda label: others[label])
     runs = [run for run, _ in pieces[model.labels.index(other)]]
-    return _Verdict(0.0, other, spans_s(runs, recording.rate))
+    n = sum(run.end - run.start for run in runs)
+    return _Verdict(0.0, other, spans_s(runs, recording.rate), n)
+
+
+def _when(found: _Verdict, recording: Recording, column: int) -> str:
+    share = found.frames / recording.seen[:, column].sum()
+    return "" if share > MOST else f" in {share:.0%} of its frames"
