@@ -108,7 +108,7 @@ def _checked_tiles(facts: list[LabelFact], model: TopologicalModel) -> list[tupl
     return [
         ("Labels checked", f"{len(facts) - unknown} of {len(facts)}", f"model {model.name}"),
         ("To look at", str(sum(f.trust == "poor" for f in facts)), "another label fits better"),
-        ("Not judged", str(unknown), "neither right nor wrong: too still, short or alike"),
+        ("Not judged", str(unknown), "may be right or wrong: too still, short or alike"),
     ]
 
 
