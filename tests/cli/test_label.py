@@ -10,7 +10,7 @@ import pytest
 from kinesphere.cli.label import show
 from kinesphere.cli.main import run
 from kinesphere.data import Recording, Step
-from kinesphere.io import read, write, write_model
+from kinesphere.io import read, read_model, write, write_model
 from kinesphere.labelling import built_in_model
 from kinesphere.report import labelling_html
 from kinesphere.skeleton.statistics import marker_statistics
@@ -67,9 +67,64 @@ def test_a_labelled_file_a_table_and_a_page(files, capsys):
     found = read(out)
     assert set(found.labels) <= {*HEAD, *(f"*{i}" for i in range(99))}
     page = (files / "out.html").read_text(encoding="utf-8")
+    table = (files / "out.labels.csv").read_text(encoding="utf-8")
+    assert table.startswith("label,marker,said,confidence,labelled_s,look_at_s\n")
+    assert "out.labels.csv" in said
     for name in HEAD:
         assert name in said
         assert name in page
+        assert f"\n{name}," in table
+
+
+def named(files, names, target):
+    """Write the raw recording with some of its markers named rightly."""
+    made = read(files / "raw.c3d")
+    order = [built_in_order(files)[int(label[1:])] for label in made.labels]
+    labels = tuple(
+        names(label) if names(label) else own for label, own in zip(order, made.labels, strict=True)
+    )
+    write(replace(made, labels=labels), files / target)
+    return str(files / target)
+
+
+def built_in_order(files):
+    return read_model(files / "upper.json").labels
+
+
+def test_labels_with_a_subject_are_checked_on_the_page_too(files, capsys):
+    whole = named(files, lambda label: f"Anna:{label}", "anna.c3d")
+    out, model = files / "checked.c3d", str(files / "upper.json")
+    more = ["--set", "labelling.existing=check"]
+    assert run(["label", whole, "--model", model, "-o", str(out), *more]) == 0
+    said = capsys.readouterr().out
+    assert "0 disagree" in said
+    page = (files / "checked.html").read_text(encoding="utf-8")
+    assert page.count('class="still"') == 3
+    for name in HEAD:
+        assert f"Anna:{name}</th>" in page
+    assert read(out).labels == read(whole).labels
+
+
+def test_kept_labels_are_said_to_be_kept(files, capsys):
+    some = named(files, lambda label: label if label in HEAD[:4] else "", "some.c3d")
+    out, model = files / "kept.c3d", str(files / "upper.json")
+    assert run(["label", some, "--model", model, "-o", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "4 kept and not checked" in said.replace("\n", " ")
+    for name in HEAD[:4]:
+        (line,) = (x for x in said.splitlines() if x.split()[:1] == [name])
+        assert line.split()[1:3] == ["kept", "–"]
+    found = read(out)
+    assert found.confidence[found.labels.index(HEAD[0])] == 1
+
+
+def test_the_table_does_not_take_the_place_of_what_is_labelled(files, capsys):
+    raw = files / "a.labels.csv"
+    raw.write_text("time_s\n", encoding="utf-8")
+    out, model = files / "a.c3d", str(files / "upper.json")
+    assert run(["label", str(raw), "--model", model, "-o", str(out)]) == 2
+    assert "is what is to be labelled" in capsys.readouterr().err.replace("\n", " ")
+    assert raw.read_text(encoding="utf-8") == "time_s\n"
 
 
 def test_where_nothing_can_be_told_nothing_is_written(files, capsys):
@@ -127,6 +182,7 @@ def test_table_and_page_call_a_confidence_the_same(files, capsys, sure, said):
     [
         (["--model", "nobody", "-o", "x.c3d"], "neither a file nor a built-in model"),
         (["--model", "cmu41", "-o", "x.bvh"], "labels go to .c3d"),
+        (["--model", "cmu41", "-o", "no/x.c3d"], "there is no folder no; make it first"),
         (["--model", "cmu41", "-o", "x.c3d", "--set", "labelling.method=guess"], "known are pair"),
     ],
 )

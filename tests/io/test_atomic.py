@@ -76,7 +76,10 @@ def test_places_that_cannot_be_written_to(tmp_path):
     (tmp_path / "file").touch()
     for path, message in (
         (tmp_path, "is a folder"),
-        (tmp_path / "none" / "a.txt", "cannot be written"),
+        (
+            tmp_path / "none" / "a.txt",
+            "cannot be written: there is no folder .*none; make it first",
+        ),
         (tmp_path / "file" / "a.txt", "cannot be written"),
     ):
         with pytest.raises(UnwritableFile, match=message), replacing(path):

@@ -33,10 +33,11 @@ def label(
 ) -> None:
     """Label a recording by a model of the layout, learnt from other people.
 
-    Writes everything the file held with the labels that could be told and how sure they are, and a
-    page OUT.html beside it that shows where to look. Labels that are there already are kept; with
-    [bold]--set labelling.existing=check[/bold] they are checked, with [bold]=ignore[/bold] given
-    anew. Where none could be given, nothing is written and the reason said.
+    Writes everything the file held with the labels that could be told and how sure they are; beside
+    it a page OUT.html that shows where to look, and OUT.labels.csv, the same as a table. Labels
+    that are there already are kept; with [bold]--set labelling.existing=check[/bold] they are
+    checked, with [bold]=ignore[/bold] given anew. Where none could be given, nothing is written
+    and the reason said.
 
     Examples: [bold]kinesphere label raw.c3d --model cmu41 -o labelled.c3d[/bold],
     [bold]kinesphere label raw.c3d --model mine.json -o labelled.c3d[/bold]
@@ -47,14 +48,17 @@ def label(
     from kinesphere.io import check_file_place, replacing, write
     from kinesphere.labelling import built_in_model
     from kinesphere.labelling import label as give_labels
-    from kinesphere.report import labelling_html
+    from kinesphere.report import labelling_html, write_label_table
 
-    page = output.with_suffix(".html")
+    page, table = output.with_suffix(".html"), output.with_suffix(".labels.csv")
     if output.suffix.lower() not in (".c3d", ".trc", ".csv"):
         raise BadArgument(f"{output}: labels go to .c3d, or to .trc or .csv without confidences")
-    if output.exists() and file.exists() and output.samefile(file):
-        raise BadArgument(f"{output} is what is to be labelled; name another file for the result")
-    check_file_place(output)
+    for place in (output, page, table):
+        if place.exists() and file.exists() and place.samefile(file):
+            raise BadArgument(
+                f"{place} is what is to be labelled; name another file for the result"
+            )
+        check_file_place(place)
     settings = settings_from_options(assignments, settings_file)
     with progress_bar(quiet=as_json) as progress:
         progress("reading", 0, 3)
@@ -72,12 +76,19 @@ def label(
         with replacing(page) as temporary:
             text = labelling_html(labelled, chosen, file.name)
             temporary.write_text(text, encoding="utf-8", newline="\n")
-    summary = {"file": str(file), "output": str(output), "page": str(page), **describe(labelled)}
+        write_label_table(labelled, table)
+    summary = {
+        "file": str(file),
+        "output": str(output),
+        "page": str(page),
+        "table": str(table),
+        **describe(labelled),
+    }
     if as_json:
         print_json(summary)
         return
     show(summary)
-    stdout().print(f"\nLabelled: {output}\nReport: {page}", soft_wrap=True)
+    stdout().print(f"\nLabelled: {output}\nReport: {page}\nTable: {table}", soft_wrap=True)
 
 
 def refuse_nothing(recording: "Recording", file: Path) -> None:
@@ -106,7 +117,7 @@ def show(summary: dict[str, Any]) -> None:
     from kinesphere.labelling.findings import said_of
 
     console = stdout()
-    if "labels" not in summary:
+    if "checked" in summary:
         head = f"{summary['checked']} labels checked, {len(summary['disagree'])} disagree"
         if summary["not_judged"]:
             head += f", {len(summary['not_judged'])} could not be judged"
@@ -117,13 +128,15 @@ def show(summary: dict[str, Any]) -> None:
         f"{summary['labels_given']} of {summary['labels_known']} labels of {summary['model']} "
         f"given, {summary['points_left_unlabelled']} pieces left unlabelled"
     )
+    if kept := sum(bool(row.get("kept")) for row in summary["labels"].values()):
+        head += f", {kept} kept and not checked"
     print_title(console, Path(summary["file"]).name, head)
     rows = []
     for name, row in sorted(
         summary["labels"].items(), key=lambda item: (item[1]["confidence"] or 0.0, item[0])
     ):
-        sure = row["confidence"]
-        said = "not given" if sure is None else said_of(sure)
+        sure = None if row.get("kept") else row["confidence"]
+        said = "kept" if row.get("kept") else "not given" if sure is None else said_of(sure)
         rows.append(
             (
                 name,

@@ -93,6 +93,10 @@ def check_file_place(path: str | Path) -> None:
         if path.exists() and not path.stat().st_mode & _MAY_WRITE:
             # replacing asks the folder alone, so a protected recording would be lost in silence
             raise UnwritableFile(f"{path} is write-protected; name another file")
+        if not path.parent.exists():
+            raise UnwritableFile(
+                f"{path}: cannot be written: there is no folder {path.parent}; make it first"
+            )
         _check_may_write(path.parent)
 
 
@@ -114,8 +118,6 @@ def check_directory_place(path: str | Path, is_ours: Callable[[Path], bool]) -> 
 
 
 def _check_may_write(folder: Path) -> None:
-    if not folder.exists():
-        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
     if not folder.is_dir():
         raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR))
     if not os.access(folder, os.W_OK | os.X_OK):

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinesphere.data import Json, Recording, Step, TopologicalModel, settings_as_json
+from kinesphere.data import Recording, TopologicalModel
 from kinesphere.labelling.findings import mean_confidences, step_of
 from kinesphere.labelling.labelled import Labelled
 from kinesphere.labelling.runs import Run, Track, points_of
@@ -53,7 +53,7 @@ def assembled(
     sure = mean_confidences(state, len(model.labels))
     confidence = np.full(len(labels), np.nan)
     confidence[: len(given)] = sure[given]
-    step = step_of(model, settings, seeds, state, sure)
+    step = step_of(model, settings, seeds, state, sure, recording.rate)
     return replace(
         recording,
         markers=markers,
@@ -85,44 +85,3 @@ def _names(
         used.add(f"*{number}")
         names.append(f"*{number}")
     return names
-
-
-def checked(
-    recording: Recording,
-    model: TopologicalModel,
-    settings: LabellingSettings,
-    known: dict[str, int],
-    state: Labelled,
-) -> Recording:
-    """Return the recording with its own labels, and what speaks against them.
-
-    Labels that could not be judged have no confidence, those that another label fits better have 0.
-    """
-    found: dict[str, Json] = {}
-    sure = np.full(recording.n_markers, np.nan)
-    columns = {column: name for name, column in known.items()}
-    for track, of, certain in zip(state.tracks, state.labels, state.confidence, strict=True):
-        for run in track:
-            name = columns.get(run.column)
-            if name is None or of < 0:
-                continue
-            agrees = model.labels[of] == name
-            sure[run.column] = certain if agrees else 0.0
-            if not agrees:
-                found[name] = model.labels[of]
-    unknown: list[Json] = [name for name, column in known.items() if np.isnan(sure[column])]
-    step = Step(
-        name="label",
-        settings={"model": model.name, **settings_as_json(settings)},
-        findings={
-            "checked": len(known) - len(unknown),
-            "disagree": found,
-            "not_judged": unknown,
-        },
-        warnings=(
-            *state.notes,
-            *([f"could not be judged: {', '.join(map(str, unknown))}"] if unknown else ()),
-            *(f"{name} moves like {other} of model {model.name}" for name, other in found.items()),
-        ),
-    )
-    return replace(recording, confidence=sure, history=(*recording.history, step))

@@ -1,9 +1,12 @@
 """What labelling found, as the step tells it: how sure, and where a person should look."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from kinesphere.data import Array, Json, Step, TopologicalModel, settings_as_json
 from kinesphere.labelling.labelled import Labelled, length_of
+from kinesphere.labelling.runs import Run
 from kinesphere.labelling.settings import LabellingSettings
 from kinesphere.labelling.template import template_of
 
@@ -35,12 +38,33 @@ def mean_confidences(state: Labelled, n_labels: int) -> Array:
     return np.where(frames > 0, total / np.maximum(frames, 1), np.nan)
 
 
+def spans_s(found: Iterable[Run], rate: float) -> list[Json]:
+    """Return start and end of runs in s, in order; those that touch are one."""
+    joined: list[list[int]] = []
+    for start, end in sorted((run.start, run.end) for run in found):
+        if joined and start <= joined[-1][1]:
+            joined[-1][1] = max(end, joined[-1][1])
+        else:
+            joined.append([start, end])
+    return [[round(a / rate, 3), round(b / rate, 3)] for a, b in joined]
+
+
+def _doubtful_runs(state: Labelled, label: int) -> list[Run]:
+    return [
+        run
+        for track, of, sure in zip(state.tracks, state.labels, state.confidence, strict=True)
+        if of == label and sure < DOUBTFUL
+        for run in track
+    ]
+
+
 def step_of(
     model: TopologicalModel,
     settings: LabellingSettings,
     seeds: dict[str, int],
     state: Labelled,
     sure: Array,
+    rate: float,
 ) -> Step:
     """Return the step of a labelling; ``sure`` is the mean confidence of each label."""
     known = recognisable_labels(model)
@@ -52,6 +76,8 @@ def step_of(
             "pieces": sum(
                 len(t) for t, of in zip(state.tracks, state.labels, strict=True) if of == i
             ),
+            "kept": name in seeds,
+            "look_s": spans_s(_doubtful_runs(state, i), rate),
         }
         for i, name in enumerate(model.labels)
         if name in known or seen[i] > 0

@@ -6,7 +6,8 @@ import numpy as np
 
 from kinesphere.data import Recording, TopologicalModel
 from kinesphere.errors import BadRecording
-from kinesphere.labelling.assembling import assembled, checked
+from kinesphere.labelling.assembling import assembled
+from kinesphere.labelling.checking import checked
 from kinesphere.labelling.crowd import followed, is_crowd, taken
 from kinesphere.labelling.huang_xia import match_huang_xia
 from kinesphere.labelling.matching import Labeller

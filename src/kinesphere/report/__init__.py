@@ -3,6 +3,7 @@
 from kinesphere.report.comparison import comparison_html as comparison_html
 from kinesphere.report.joint_table import JointRow as JointRow
 from kinesphere.report.joint_table import joint_rows as joint_rows
+from kinesphere.report.label_table import write_label_table as write_label_table
 from kinesphere.report.labelling import labelling_html as labelling_html
 from kinesphere.report.notices import Notice as Notice
 from kinesphere.report.notices import names_of as names_of
