@@ -60,10 +60,10 @@ def test_an_axis_is_doubted_by_the_whole_of_its_uncertainty(range_deg, halves_de
 def test_another_reading_of_the_movement_is_part_of_it():
     told = quality(80.0, 12.0, 9.0), AXIS, None, swing(80.0, 0.0), SETTINGS
     assert np.rad2deg(told[0].uncertainty[0]) == pytest.approx(
-        np.sqrt(6**2 + 1.432**2 + 9**2), 1e-3
+        np.sqrt(6**2 + np.rad2deg(3 / 80) ** 2 + 9**2), 1e-3
     )
     (said,) = reasons_to_doubt(*told)
-    assert said.startswith("an axis is uncertain by 10.9°")
+    assert said.startswith("an axis is uncertain by 11.0°")
     assert said.endswith("if the limb twists with the angle, it is 9° off")
     assert "twists" not in doubts(12.5, 12.0)[0]
 

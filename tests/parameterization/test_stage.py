@@ -432,6 +432,19 @@ def test_twelve_frames_a_second_are_enough(performance):
         assert axis_errors(joint, slow.skeleton.joint(joint.name)).max() < 2 * AXIS
 
 
+def test_a_window_that_ends_on_frames_gives_the_same_axes_from_either_end_of_time():
+    play = make_performance(np.random.default_rng(5), rate=12.0, calibration_s=18.0, free_s=0.0)
+    ahead: Motion = only(play.motion, ["trunk", "left_thigh", "left_shank", "left_foot"])
+    back = cut(ahead, slice(None, None, -1))
+    last = (ahead.n_frames - 1) / ahead.rate
+    first = parameterize(ahead, calibration=(2.5, 11.25)).skeleton.joints
+    second = parameterize(back, calibration=(last - 11.25, last - 2.5)).skeleton.joints
+    for one, other in zip(first, second, strict=True):
+        assert one.axes_source == other.axes_source
+        assert_allclose(np.abs((one.axes * other.axes).sum(axis=1)), 1.0, atol=1e-9)
+        assert_allclose(one.rest, other.rest, atol=1e-4)
+
+
 def test_axes_that_were_only_assumed_are_not_reused(performance):
     joints = tuple(
         replace(joint, axes_source="body") if joint.name == "left_knee" else joint

@@ -1,11 +1,17 @@
 """Which frames axes are taken from, and how they are laid one after another."""
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from kinesphere.data import PoseFlag
 from kinesphere.parameterization import ParameterizationSettings
-from kinesphere.parameterization.view import reliable_frames, view_halves, view_joint
+from kinesphere.parameterization.view import (
+    frames_within,
+    reliable_frames,
+    view_halves,
+    view_joint,
+)
 
 SMOOTHED = 0.05  # what 4 Hz do to a limb's direction at the ends of short runs
 
@@ -47,6 +53,22 @@ def test_the_window_bounds_them():
     window = np.arange(8) >= 3
     chosen = reliable_frames(flags([PoseFlag.MEASURED] * 8, [PoseFlag.MEASURED] * 8), window)
     assert_array_equal(chosen, window)
+
+
+@pytest.mark.parametrize("rate", [12.0, 29.97, 100.0, 120.0])
+def test_frames_on_the_edge_of_a_window_are_inside_from_either_end_of_time(rate):
+    last = 215 / rate
+    for first, final in ((30, 135), (7, 91), (33, 34), (1, 214)):
+        ahead = frames_within(216, rate, (first / rate, final / rate))
+        back = frames_within(216, rate, (last - final / rate, last - first / rate))
+        assert_array_equal(np.flatnonzero(ahead), np.arange(first, final + 1))
+        assert_array_equal(back, ahead[::-1])
+
+
+def test_a_frame_that_is_outside_a_window_stays_outside():
+    assert_array_equal(np.flatnonzero(frames_within(8, 10.0, (0.11, 0.49))), [2, 3, 4])
+    assert not frames_within(8, 10.0, (0.12, 0.18)).any()
+    assert not frames_within(0, 10.0, (0.0, 1.0)).any()
 
 
 def test_bad_frames_are_not_smoothed_into_good_ones(rng, calibration):

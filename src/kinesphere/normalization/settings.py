@@ -55,7 +55,7 @@ class NormalizationSettings:
     fewest: int = setting(
         600,
         "a recording of no more frames is looked at in all of them, of a longer one in as many at "
-        "least: who never stands still is no other person for a frame more or less",
+        "least; in a short one nothing hangs on which frames are looked at",
         low=1,
         high=1_000_000,
         source=_TRIED,

@@ -78,6 +78,17 @@ def uncertain(quality: AxesQuality) -> str:
         "an axis is uncertain by {:.1f}°: its movement covers {:.0f}°, and two halves of it differ "
         "by {:.0f}°"
     ).format(*degrees)
-    if (other := np.rad2deg(quality.readings[worst])) >= WORTH_TELLING:
-        told += f"; if the limb twists with the angle, it is {other:.0f}° off"
-    return told
+    return told + _if_it_twists(quality.readings[worst])
+
+
+def uncertain_in_free_motion(uncertainty: float, reading: float) -> str:
+    """Return how uncertain the axis of a hinge from all its movement is, rad, as a clause."""
+    told = f"the axis of all movement is uncertain by {np.rad2deg(uncertainty):.1f}°"
+    return told + _if_it_twists(reading)
+
+
+def _if_it_twists(reading: float) -> str:
+    """Return how far such twist puts an axis off, rad, to be put behind a clause."""
+    off = np.rad2deg(reading)
+    told = f"; if the limb twists with the angle, it is {off:.0f}° off"
+    return told if off >= WORTH_TELLING else ""

@@ -6,7 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.parameterization.arcs import PERCENTILES
-from kinesphere.parameterization.axes.hinge import hinge_axis
+from kinesphere.parameterization.axes.hinge import hinge_axis, other_reading
 from kinesphere.parameterization.confidence import with_tissue
 from kinesphere.parameterization.samples import JointSamples, Phase
 
@@ -22,7 +22,10 @@ class FreeHinge:
     axis: Array
     """(3,)"""
     uncertainty: float
-    """rad, standard deviation of the direction of the axis (jackknife over the folds, and skin)."""
+    """rad, standard deviation of the direction of the axis: jackknife over the folds, skin, and
+    ``reading``."""
+    reading: float
+    """rad, how far the axis is off if the limb twists with the angle: `other_reading`."""
     error: float
     """rad, mean out-of-cone angle in parts that the axis and its cone were not found from."""
     body_error: float
@@ -74,9 +77,11 @@ def free_hinge(samples: JointSamples, body_axis: Array) -> FreeHinge | None:
     arc = float(np.diff(np.percentile(azimuth, PERCENTILES))[0])
     moved = arc * float(np.median(np.linalg.norm(across, axis=1)))
     jackknife = np.sqrt((FOLDS - 1) / FOLDS * np.sum(np.square(turns)))
+    reading = other_reading(samples, axis)  # alike in all folds: the jackknife does not see it
     return FreeHinge(
         axis=axis,
-        uncertainty=float(with_tissue(np.array(jackknife), np.array(moved))),
+        uncertainty=float(with_tissue(np.hypot(jackknife, reading), np.array(moved))),
+        reading=reading,
         error=float(np.concatenate(errors).mean()),
         body_error=float(np.concatenate(body_errors).mean()),
         moved=moved,

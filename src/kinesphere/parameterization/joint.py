@@ -18,6 +18,7 @@ from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.fit import moving_positions
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.confidence import AxesQuality, observed_n_axes
+from kinesphere.parameterization.doubts import uncertain_in_free_motion
 from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge
 from kinesphere.parameterization.movement_axes import movement_axes
 from kinesphere.parameterization.per_joint import parse_counts
@@ -98,6 +99,10 @@ def fit_joint(
     if free is not None:
         axes, rest, _ = movement_rest(view, free.axis[None], _height(view, free.axis), settings)
         uncertainty = np.array([free.uncertainty])
+        largest = np.deg2rad(options.largest_uncertainty)
+        told = quality is not None and quality.uncertainty.max() > largest
+        if free.uncertainty > largest and not told:
+            doubts.append(uncertain_in_free_motion(free.uncertainty, free.reading))
     elif quality is not None and len(axes) == n_axes and (not doubts or keep):
         axes, rest, order = movement_rest(view, axes, quality.heights, settings)
         quality = quality.ordered(order)
@@ -136,8 +141,8 @@ def fit_joint(
         "axes_apart_deg": angles_between(axes),
         **_quality_findings(quality),
     }
-    if source == "movement" and free is None and quality is not None and quality.readings.any():
-        findings["other_reading_deg"] = float(np.rad2deg(quality.readings[0]))
+    if source == "movement" and (reading := _reading(quality, free)) > 0:
+        findings["other_reading_deg"] = float(np.rad2deg(reading))
     kept = ""
     if free is not None:
         left, body_left = np.rad2deg(free.error), np.rad2deg(free.body_error)
@@ -191,6 +196,13 @@ def _free_hinge(view: JointView, options: AxesSettings) -> FreeHinge | None:
     loose = found.uncertainty > np.deg2rad(LOOSE * options.largest_uncertainty)
     anatomical = view.human and joint_kind(view.name) is not None
     return None if small or loose or (far and anatomical) else found
+
+
+def _reading(quality: AxesQuality | None, free: FreeHinge | None) -> float:
+    """Return how far the axis that serves is off if its limb twists with the angle, rad."""
+    if free is not None:
+        return free.reading
+    return 0.0 if quality is None else float(quality.readings[0])
 
 
 def _height(view: JointView, axis: Array) -> Array:

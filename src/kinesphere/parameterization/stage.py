@@ -43,7 +43,7 @@ from kinesphere.parameterization.settings import (
     ParameterizationSettings,
 )
 from kinesphere.parameterization.third_axis import fit_axes
-from kinesphere.parameterization.view import reliable_frames, view_joint
+from kinesphere.parameterization.view import frames_within, reliable_frames, view_joint
 
 TORN = 0.02  # m, joints closer together than this are never called dislocated
 OUTLYING = 6.0  # robust standard deviations
@@ -223,7 +223,7 @@ def _window(motion: Motion, calibration: tuple[float, float] | None, said: str) 
     if calibration is None:
         return np.ones(motion.n_frames, dtype=bool)
     start, end = calibration
-    window = np.asarray((motion.times >= start) & (motion.times <= end))
+    window = frames_within(motion.n_frames, motion.rate, calibration)
     if not window.any():
         last = motion.times[-1] if motion.n_frames else 0.0
         raise BadSetting(f"{said} {start:g}–{end:g} s; the recording runs from 0 to {last:.2f} s")

@@ -11,6 +11,7 @@ from kinesphere.parameterization.samples import JointSamples, runs, smooth_rotat
 from kinesphere.parameterization.settings import ParameterizationSettings
 
 FAIR_SHARE = 0.25  # of the seen frames; the others may show movements that these do not
+EDGE = 0.01  # of a frame: a frame on the edge of a window is inside, however its time is rounded
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +38,13 @@ class JointView:
         """(3,) centre of gravity of the samples; the limb aligned with its parent without any."""
         p = self.samples.positions
         return np.asarray(p.mean(axis=0)) if len(p) else self.long_axis
+
+
+def frames_within(n_frames: int, rate: float, window: tuple[float, float]) -> Mask:
+    """Return which frames lie in a window, (start, end) in s since the first one, both included."""
+    start, end = (rate * edge for edge in window)
+    frames = np.arange(n_frames)
+    return np.asarray((frames >= start - EDGE) & (frames <= end + EDGE))
 
 
 def reliable_frames(flags: Codes, window: Mask) -> Mask:
