@@ -1,4 +1,4 @@
-"""Feet without a heel marker: their sole is level where they rest flat, wherever else they point."""
+"""Feet without a heel marker: level where they rest flat on the floor, and only there."""
 
 from dataclasses import replace
 
@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+from kinesphere.data import PoseFlag
 from kinesphere.normalization import normalize
 from kinesphere.normalization.soles import turned_by
 
@@ -152,8 +153,44 @@ def test_of_somebody_who_does_not_stand_nothing_is_known(doll, tools, turned):
     assert_left_alone(doll(stance=tools.stance | FLAT, world=world).motion)
 
 
+def test_where_shanks_are_not_seen_the_body_must_be_upright(doll, tools):
+    motion = doll(stance=tools.stance | FLAT, n_frames=20).motion
+    for side in ("left", "right"):
+        motion = tools.hidden(motion, f"{side}_shank", slice(1, 20))
+    lies = Rotation.from_euler("z", 90, degrees=True).as_matrix()
+    lying = replace(motion, rotations=lies @ motion.rotations, origins=motion.origins @ lies.T)
+    assert None not in soles(normalize(heelless(motion))).values()
+    assert_left_alone(lying)
+
+
+def test_a_foot_held_still_in_the_air_does_not_stand(doll, tools):
+    held = np.where(np.arange(N) < 120, 1.2, 0.0)
+    bends = {
+        "left_thigh": about_z(held),
+        "left_shank": about_z(-held),
+        "left_foot": about_z(-0.5 * held),
+    }
+    it = doll(stance=tools.stance | FLAT, n_frames=N, bends=bends)
+    found = normalize(heelless(it.motion))
+    assert_allclose(pitch_of(found, "left_foot")[120:], 0.0, atol=1e-6)
+
+
+def test_a_foot_that_turns_about_its_toes_does_not_rest(doll, tools):
+    """Both heels go up and down while the toes stay where they are; at first they are down."""
+    t = np.arange(N) / 50.0
+    lifted = np.where(t > 0.8, 0.3 * (1 - np.cos(2 * np.pi * (t - 0.8))), 0.0)
+    line = -0.2 - lifted
+    toes = 0.2 * np.stack([np.cos(line), np.sin(line), np.zeros(N)], axis=1)
+    feet = dict.fromkeys(FEET, FLAT["left_foot"])
+    bends = both("foot", about_z(-lifted))
+    it = doll(stance=tools.stance | feet, n_frames=N, bends=bends, walk=toes[0] - toes)
+    found = normalize(heelless(it.motion))
+    for name in FEET:
+        assert_allclose(pitch_of(found, name), -lifted, atol=1e-6)
+
+
 def test_a_foot_on_its_toes_is_left_as_it_is(doll, tools):
-    feet = {name: (1.0, -1.3, 0.0) for name in FEET}
+    feet = dict.fromkeys(FEET, (1.0, -1.3, 0.0))
     assert_left_alone(doll(stance=tools.stance | feet).motion)
 
 
@@ -163,10 +200,14 @@ def test_feet_that_never_rest_are_left_as_they_are(doll, tools):
 
 
 def test_feet_that_rest_in_two_ways_are_left_as_they_are(doll, tools):
-    """As long on tiptoe as flat, and as still, at about the same height of the toes."""
-    raised = both("foot", about_z(np.where(np.arange(N) < N // 2, 0.0, -0.4)))
-    way = np.where(np.arange(N) < N // 2, 0.0, 0.2 * 0.4)[:, None] * [0.0, 1.0, 0.0]
-    assert_left_alone(doll(stance=tools.stance | FLAT, n_frames=N, bends=raised, walk=way).motion)
+    """As long on tiptoe as flat, and as still; unless one of the two is not measured."""
+    up = np.arange(N) >= N // 2
+    bends, way = both("foot", about_z(np.where(up, -0.4, 0.0))), np.outer(0.08 * up, [0, 1, 0])
+    motion = doll(stance=tools.stance | FLAT, n_frames=N, bends=bends, walk=way).motion
+    assert_left_alone(motion)
+    flags = np.where(up[:, None], PoseFlag.FILLED, motion.flags)
+    found = soles(normalize(heelless(replace(motion, flags=flags))))
+    assert found == pytest.approx({name: np.rad2deg(PITCH[name]) for name in FEET}, abs=1e-6)
 
 
 def test_feet_behind_somebody_who_kneels_do_not_stand(doll, tools):

@@ -39,7 +39,7 @@ def find_rest(samples: Samples, limb: int) -> Rest:
     """Return how the line of a foot lies where the foot stands still on the floor.
 
     Of the samples of the whole recording those in which both its ends are slow (the slowest tenth)
-    and its toes low; its shank must hang and the body not lie, stand on its head or be filled in.
+    and its toes low; its shank must hang, as it does not of who lies, kneels or stands on the head.
 
     Parameters
     ----------
@@ -85,11 +85,12 @@ def turned_by(points: Array, pitch: float) -> Array:
 
 
 def _stands(samples: Samples, limb: int) -> Mask:
-    """Return the samples, (n,), in which a foot was seen under a shank of a body upright."""
+    """Return the samples, (n,), in which a foot was seen under a shank, or an upright body."""
     flags = samples.motion.flags[samples.frames, limb]
     shank = samples.directions[:, samples.anatomy.skeleton.parents[limb]] @ -UP
     upright = (samples.vertical == UP).all(axis=1)
-    return np.asarray(upright & (flags != PoseFlag.FILLED) & ~(shank < _HANGS))
+    under = np.where(np.isfinite(shank), shank >= _HANGS, upright)
+    return np.asarray(under & (flags != PoseFlag.FILLED))
 
 
 def _toes(samples: Samples, limb: int) -> tuple[Array, Array]:
