@@ -157,7 +157,7 @@ def test_where_shanks_are_not_seen_the_body_must_be_upright(doll, tools):
     motion = doll(stance=tools.stance | FLAT, n_frames=20).motion
     for side in ("left", "right"):
         motion = tools.hidden(motion, f"{side}_shank", slice(1, 20))
-    lies = Rotation.from_euler("z", 90, degrees=True).as_matrix()
+    lies = Rotation.from_euler("x", 90, degrees=True).as_matrix()
     lying = replace(motion, rotations=lies @ motion.rotations, origins=motion.origins @ lies.T)
     assert None not in soles(normalize(heelless(motion))).values()
     assert_left_alone(lying)

@@ -46,8 +46,8 @@ walk (85_02: forearms at 61°, and 60° is where arms no longer hang)."""
 def provisional(path, without=()):
     recording = read(path)
     if without:
-        kept = [i for i, l in enumerate(recording.labels) if l.split(":")[-1] not in without]
-        labels = tuple(recording.labels[i] for i in kept)
+        labels = tuple(at for at in recording.labels if at.split(":")[-1] not in without)
+        kept = [recording.labels.index(label) for label in labels]
         recording = Recording(
             markers=recording.markers[:, kept], labels=labels, rate=recording.rate, up=recording.up
         )
