@@ -14,9 +14,11 @@ from kinesphere.labelling.layout import Layout, layout_of
 from kinesphere.labelling.problem import Labels, problem_of
 from kinesphere.labelling.solving import FEW, scale_by_labels
 
-DEARER = 15.0
+DEARER = 60.0
 """Nats by which labels of one recording's layout alone may fit worse than those of all together:
-a marker on the skin goes to an addition beside it for 2, a body that wears additions costs 50."""
+additions beside a marker take it for 0 to 46, a body that wears two of them costs 205."""
+FILLED = 0.8
+"""Least share of a smaller layout's labels that must have points: a few are always missing."""
 
 
 def smaller_layout(model: TopologicalModel, layout: Layout, n_points: int) -> Layout | None:
@@ -28,7 +30,7 @@ def smaller_layout(model: TopologicalModel, layout: Layout, n_points: int) -> La
         return None
     every = set(layout.template.labels)
     worn = {tuple(x for x in model.labels if x in every & {*s.labels}) for s in model.statistics}
-    fitting = [x for x in worn if FEW * len(x) <= n_points <= len(x) < layout.template.n]
+    fitting = [x for x in worn if FILLED * len(x) <= n_points <= len(x) < layout.template.n]
     if not fitting:
         return None
     return layout_of(model, min(fitting, key=lambda labels: (len(labels), labels)))
