@@ -6,6 +6,7 @@ import numba
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
+from tests.labelling.conftest import actor, lower_body
 
 from kinesphere import read
 from kinesphere.geometry.signature import scale_of, signature
@@ -15,7 +16,6 @@ from kinesphere.labelling.pair_statistics import match_pair_statistics
 from kinesphere.labelling.solving import best_scale, scale_by_labels
 from kinesphere.labelling.worn import is_worn, numbered, smaller_layout
 from kinesphere.skeleton.statistics import marker_statistics
-from tests.labelling.conftest import actor, lower_body
 
 pytestmark = pytest.mark.skipif(
     bool(numba.config.DISABLE_JIT), reason="a search in plain Python takes minutes"
