@@ -10,8 +10,10 @@ from scipy.spatial.transform import Rotation
 
 from kinesphere.errors import BadModel
 from kinesphere.geometry.rigid import fit_rigid, out_of_frame
+from kinesphere.geometry.signature import signature
 from kinesphere.labelling.huang_xia import match_huang_xia
 from kinesphere.labelling.pair_statistics import match_pair_statistics
+from kinesphere.labelling.plausible import is_still
 from kinesphere.labelling.stage import LABELLERS
 
 pytestmark = pytest.mark.skipif(
@@ -143,6 +145,19 @@ class TestPairStatistics:
         match = match_pair_statistics(still, model)
         assert (match.labels == -1).all()
         assert match.note.startswith("nothing moves")
+
+    def test_who_swings_one_leg_alone_moves(self, legs):
+        model, recording = legs
+        points = np.repeat(recording.markers[:1], 200, axis=0)
+        leg = [s for s in model.segments if s.name in ("left_shank", "left_foot")]
+        moved = [c for s in leg for c in recording.columns(s.markers)]
+        turn = Rotation.from_rotvec(np.outer(0.5 * np.sin(np.arange(200) / 20), [1.0, 0.2, 0.0]))
+        knee = points[0, moved].max(axis=0)
+        points[:, moved] = knee + np.einsum(
+            "tij,kj->tki", turn.as_matrix(), points[0, moved] - knee
+        )
+        assert not is_still(signature(points))
+        assert not match_pair_statistics(points, model).note.startswith("nothing moves")
 
     def test_points_that_move_like_nobody_are_refused(self, legs, rng):
         model, recording = legs

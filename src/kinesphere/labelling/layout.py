@@ -1,5 +1,6 @@
 """A layout ready to be searched for, and what a search found."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -38,9 +39,9 @@ class Solved(NamedTuple):
     """0…1: how far starts ended in these labels, 1 from as many on as are looked for."""
 
 
-def layout_of(model: TopologicalModel) -> Layout:
-    """Return what a model knows; BadModel if it has no statistics."""
-    template = template_of(model)
+def layout_of(model: TopologicalModel, labels: Sequence[str] | None = None) -> Layout:
+    """Return what a model knows, of some labels if given; BadModel if it has no statistics."""
+    template = template_of(model, labels)
     into = {label: i for i, label in enumerate(model.labels)}
     return Layout(
         template,

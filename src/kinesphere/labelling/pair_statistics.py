@@ -36,6 +36,7 @@ from kinesphere.labelling.solving import continued, finished, refined
 from kinesphere.labelling.template import LEAST_LABELS
 from kinesphere.labelling.verdict import MARGIN as MARGIN
 from kinesphere.labelling.verdict import verdict
+from kinesphere.labelling.worn import is_worn, numbered, smaller_layout
 
 
 def match_pair_statistics(
@@ -95,13 +96,31 @@ def match_pair_statistics(
             n_points, "nothing moves: markers are recognised by how they move with each other"
         )
     if start is None:
-        solved, some = solved_apart(points[:, kept], found, layout)
+        solved, some, layout = _of_anybody(points[:, kept], found, layout, model)
         kept = kept[some]
     else:
         back = np.full(len(model.labels) + 1, -1, dtype=np.int64)
         back[layout.into] = np.arange(layout.template.n)
         solved = continued(found, layout, back[start[kept]])
     return verdict(solved, layout, kept, n_points, model.name)
+
+
+def _of_anybody(
+    points: Array, found: Signature, layout: Layout, model: TopologicalModel
+) -> tuple[Solved, NDArray[np.intp], Layout]:
+    """Label points by the model, or by the smaller layout of one of its recordings if that is worn.
+
+    Returns the labels, the points they are about, and the layout they belong to.
+    """
+    n = points.shape[1]
+    solved, some = solved_apart(points, found, layout)
+    smaller = smaller_layout(model, layout, n)
+    if smaller is not None:
+        alone, these = solved_apart(points, found, smaller)
+        ours = numbered(alone.labels, these, smaller, layout, n)
+        if is_worn(found, ours, numbered(solved.labels, some, layout, layout, n), layout):
+            return alone, these, smaller
+    return solved, some, layout
 
 
 def _best_of(bodies: list[NDArray[np.intp]], points: Array, model: TopologicalModel) -> Match:

@@ -15,10 +15,13 @@ SPARE = 1.5
 STILL = 0.0005
 """Median deviation of distances, in scales, below which nothing moves: 3 mm on a full layout.
 Standing quietly is less, any movement ten times as much."""
+MOVING = (4.0, 0.1)
+"""Somebody who rests but for a limb moves: this share of the distances varies by so many times
+that. One arm of a full layout moves 0.24 of them, both arms 0.45, a standing trial none."""
 
 
 def is_still(found: Signature) -> bool:
-    """Tell whether nothing moves against anything else."""
+    """Tell whether nothing moves against anything else, be it a limb alone."""
     return _still(found.mean, found.std)
 
 
@@ -32,7 +35,10 @@ def _still(mean: Array, deviation: Array) -> bool:
     pairs = deviation[np.triu_indices(len(deviation), 1)]
     pairs = pairs[np.isfinite(pairs)]
     limit = STILL * scale_of(mean[np.ix_(known, known)]) if known.any() else 0.0
-    return not len(pairs) or float(np.median(pairs)) < limit
+    if not len(pairs):
+        return True
+    moving = float((pairs > MOVING[0] * limit).mean()) > MOVING[1]
+    return float(np.median(pairs)) < limit and not moving
 
 
 def plausible(points: Array, seen: NDArray[np.bool_], n_labels: int) -> NDArray[np.intp]:

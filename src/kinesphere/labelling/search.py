@@ -27,6 +27,10 @@ HOT, WARM, COLD = 15.0, 8.0, 1.0
 quarter (from labels that are right in parts) to less than any exchange."""
 STARTS = (24, 6)
 """Annealings from starts that are given, the best first, and from labels at random."""
+GLANCES = (6, 2)
+"""And of those that only tell whether a search is worth it."""
+GLANCED = 2
+"""Ends that are mended then."""
 MENDED = 16
 """Most ends of one round that are mended, the best first."""
 AGREEING = 4
@@ -107,19 +111,36 @@ def find_labels(
     return Found(best.labels, best.energy, starts, best.times, tuple(rivals.values()))
 
 
+def glance(problem: Problem, moves: Moves, begin: Sequence[Labels], *, nullable: bool) -> End:
+    """Return the best end of few annealings: what a search in this problem is likely to find."""
+    rng = np.random.default_rng(SEED)
+    ends = _annealed(problem, begin, rng, starts=GLANCES, nullable=nullable)
+    tried = []
+    for end in ends[:GLANCED]:
+        labels = mended(problem, end.labels, rng, nullable=nullable)
+        labels, energy = exchange_blocks(problem, labels, moves, nullable=nullable)
+        tried.append(End(energy, labels, end.times))
+    return min(tried, key=_order)
+
+
 def _annealed(
-    problem: Problem, begin: Sequence[Labels], rng: np.random.Generator, *, nullable: bool
+    problem: Problem,
+    begin: Sequence[Labels],
+    rng: np.random.Generator,
+    *,
+    nullable: bool,
+    starts: tuple[int, int] = STARTS,
 ) -> list[End]:
     """Return where annealings end, the best first."""
     n, m = problem.n_points, problem.n_labels
     n_steps = max(500, round(STEPS * max(n, m) * m / 41**2))
-    starts = [(labels, WARM) for labels in sorted(begin, key=problem.energy)[: STARTS[0]]]
-    for _ in range(sum(STARTS) - len(starts)):
+    first = [(labels, WARM) for labels in sorted(begin, key=problem.energy)[: starts[0]]]
+    for _ in range(sum(starts) - len(first)):
         labels = np.full(n, -1, dtype=np.int64)
         labels[rng.permutation(n)[:m]] = rng.permutation(m)[:n]
-        starts.append((labels, HOT))
+        first.append((labels, HOT))
     ends: dict[bytes, End] = {}
-    for labels, hot in starts:
+    for labels, hot in first:
         labels = problem.anneal(labels, rng.random((n_steps, 3)), hot, COLD)
         labels = problem.descend(labels, nullable=nullable)
         before = ends.get(labels.tobytes())

@@ -1,5 +1,7 @@
 """The labels of least energy of one set of points, scale included."""
 
+import math
+
 import numpy as np
 
 from kinesphere.geometry.signature import Signature, scale_of
@@ -7,12 +9,18 @@ from kinesphere.labelling.doubting import doubt, shaken
 from kinesphere.labelling.exchanging import exchange_blocks, shake
 from kinesphere.labelling.layout import Layout, Solved
 from kinesphere.labelling.problem import Labels, Problem, problem_of
-from kinesphere.labelling.search import AGREEING, find_labels
+from kinesphere.labelling.search import AGREEING, find_labels, glance
 from kinesphere.labelling.shapes import alike
 from kinesphere.labelling.template import Template
 
 RESCALED = 0.01
 """Change of scale after a first labelling from which on costs are computed anew."""
+
+FEW = 0.9
+"""Points, as a share of the labels, below which the shortest tree does not tell the scale."""
+STEP = 1.3
+"""Most ratio of two scales tried then: a template's distances spread by an eighth."""
+MOST_STEPS = 4
 
 
 def solve(found: Signature, layout: Layout, given: Labels | None = None) -> Solved:
@@ -27,6 +35,8 @@ def solve(found: Signature, layout: Layout, given: Labels | None = None) -> Solv
     if given is None:
         share = (template.n - 1) / max(min(found.n, template.n) - 1, 1)
         scale = scale_of(found.mean) * share
+        if found.n < FEW * template.n:
+            scale, given = best_scale(found, layout, scale, share)
     else:
         scale = scale_by_labels(found, given, template)
     problem = problem_of(found, scale, template)
@@ -44,6 +54,37 @@ def solve(found: Signature, layout: Layout, given: Labels | None = None) -> Solv
     labels, energy = refined(problem, labels, layout)
     solved = finished(found, scale, layout, problem, labels, energy, rivals)
     return solved._replace(converged=min(1.0, (best.agreeing - 1) / (AGREEING - 1)))
+
+
+def best_scale(
+    found: Signature, layout: Layout, whole: float, share: float
+) -> tuple[float, Labels]:
+    """Return the scale of a body that wears few of the labels, and labels to start from.
+
+    Points that lack a limb join to a tree shorter by their share of the labels; points all over
+    the body that lack every other label join to one as long as the whole. So a glance is taken
+    at scales from one to the other, and the labels of least energy at their own scale tell it.
+
+    Parameters
+    ----------
+    whole
+        The scale if the points lack whole limbs.
+    share
+        Its ratio to the length of their own tree.
+    """
+    template = layout.template
+    steps = min(max(math.ceil(math.log(share) / math.log(STEP)), 1), MOST_STEPS)
+    tried = []
+    for k in range(steps + 1):
+        scale = whole / share ** (k / steps)
+        begin = alike(found.mean / scale, template.mean, layout.twin)
+        labels = glance(problem_of(found, scale, template), layout.moves, begin, nullable=False)[1]
+        own = scale_by_labels(found, labels, template)
+        problem = problem_of(found, own, template)
+        labels = problem.descend(labels, nullable=True)
+        tried.append((problem.energy(labels), own, labels))
+    _, own, labels = min(tried, key=lambda one: one[:2])
+    return own, labels
 
 
 def _descended(problem: Problem, rivals: list[tuple[float, Labels]]) -> list[tuple[float, Labels]]:
