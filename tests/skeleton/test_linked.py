@@ -103,7 +103,7 @@ def test_hidden_markers_are_posed_the_old_way(rng):
 
 
 def with_a_stranger(rng):
-    """An arm's markers and, hung from its middle by a doubtful joint, three that walk alone."""
+    """Return an arm's markers and, hung from its middle by a doubtful joint, three more."""
     markers, truth = arm(rng, 0.02)
     plate = np.array([[0.05, 0.0, 0.0], [-0.05, 0.0, 0.03], [0.0, 0.08, 0.0]])
     turns = np.swapaxes(rotation_exp(smooth(rng, 0.5)), 1, 2)
