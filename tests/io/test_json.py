@@ -171,6 +171,7 @@ def model():
                     Landmark({"LSHO": 1.0}, ("C7", "T10"), 0.1, 0.2, -0.3, 0.015, "a paper"),
                     Landmark({"LSHO": 1 / 3, "C7": 2 / 3}),
                 ),
+                doubtful=True,
             ),
         ),
         root="trunk",

@@ -24,6 +24,7 @@ def found_alone(solution):
             "cost_mm": 3.0,
             "next_best_mm": None if i else 3.1,
             "confidence": 1.0 if i else 0.03,
+            "doubtful": i in (0, 2),
             "n_axes": 2,
         }
         for i, joint in enumerate(skeleton.joints)
@@ -63,7 +64,9 @@ def test_every_body_is_drawn_and_every_joint_a_line(found_alone):
     assert len(bodies.nodes) == len(skeleton.limbs)
     assert len({(node.x, node.y) for node in bodies.nodes}) == len(bodies.nodes)
     assert len(bodies.lines) == len(skeleton.joints)
-    assert [line.doubtful for line in bodies.lines] == [True] + [False] * (len(bodies.lines) - 1)
+    assert [i for i, line in enumerate(bodies.lines) if line.doubtful] == [0, 2]
+    told = [line.confidence for line in bodies.lines]
+    assert told[:4] == ["0.03", "1.00", "?", "1.00"]  # sure only of not having another
     assert all(0 < node.x < bodies.width and 0 < node.y < bodies.height for node in bodies.nodes)
 
 

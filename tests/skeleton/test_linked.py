@@ -1,5 +1,7 @@
 """A limb of two markers between two others: all three are measured together."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -98,3 +100,47 @@ def test_hidden_markers_are_posed_the_old_way(rng):
     markers[300:320, 6:] = np.nan
     motion = solved(markers)
     assert np.isfinite(motion.rotations[:, 1]).all()
+
+
+def with_a_stranger(rng):
+    """Return an arm's markers and, hung from its middle by a doubtful joint, three more."""
+    markers, truth = arm(rng, 0.02)
+    plate = np.array([[0.05, 0.0, 0.0], [-0.05, 0.0, 0.03], [0.0, 0.08, 0.0]])
+    turns = np.swapaxes(rotation_exp(smooth(rng, 0.5)), 1, 2)
+    away = truth[0] + [0.1, -0.15, 0.0] + smooth(rng, 0.03)
+    return np.concatenate([markers, away[:, None] + plate @ turns], axis=1), truth
+
+
+def hung(doubtful, limb="limb_1"):
+    arms = model()
+    own = tuple(f"*{sum(COUNTS) + i}" for i in range(3))
+    joint = JointModel("joint_3", limb, "stranger", doubtful=doubtful)
+    segments = (*arms.segments, Segment("stranger", own))
+    return TopologicalModel("arm", segments, (*arms.joints, joint), arms.root)
+
+
+def of_all(markers, tree):
+    labels = tuple(f"*{i}" for i in range(markers.shape[1]))
+    return fit_skeleton(Recording(markers=markers, labels=labels, rate=120.0), tree)
+
+
+def test_a_limb_that_may_hang_elsewhere_bends_none_beside_it(rng):
+    markers, truth = with_a_stranger(rng)
+    alone = solved(markers[:, : sum(COUNTS)])
+    beside = of_all(markers, hung(doubtful=True))
+    for name in ("joint_1", "joint_2"):
+        one, other = alone.skeleton.joint(name), beside.skeleton.joint(name)
+        for end in ("centre_in_parent", "centre_in_child"):
+            off, there = (np.linalg.norm(getattr(joint, end)) for joint in (one, other))
+            assert_allclose(off, there, atol=5e-4)
+    assert wrist_off(beside, truth) < 0.0035
+
+
+@pytest.mark.parametrize("doubtful", [0, 1])
+def test_a_group_has_no_doubtful_joint(rng, doubtful):
+    arms = model()
+    joints = [replace(j, doubtful=i == doubtful) for i, j in enumerate(arms.joints)]
+    markers, _ = arm(rng, 0.02)
+    linked = solved(markers, replace(arms, joints=tuple(joints)))
+    alone = solved(markers, link_limbs=False)
+    assert_allclose(linked.origins, alone.origins, rtol=0, atol=0)

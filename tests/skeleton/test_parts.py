@@ -92,6 +92,19 @@ def test_the_verdict_weighs_motion_against_use_and_expectation(
     assert ("book" in note) == (expected != "determined")
 
 
+def test_a_centre_drawn_away_is_not_said_to_be_where_it_was_expected():
+    data, prior = np.diag([0.0003, 0.0009, 0.09]), np.eye(3) / 0.05**2
+    fit = CentreFit(np.array([0.2, 0.0, 0.0]), 1e-3, data, prior, np.linalg.inv(prior), 9)
+    hip = JointModel("left_hip", "pelvis", "left_thigh")
+    away, near = (
+        verdict_on(MeasuredJoint(hip, fit, expected, 0.05, "book"), 1.0, SkeletonSettings())
+        for expected in (np.zeros(3), np.array([0.16, 0.0, 0.0]))
+    )
+    assert away[0] == near[0] == "undetermined"
+    assert away[1].endswith("200 mm from where it is expected (book)")
+    assert near[1].endswith("placed by expectation (book)")
+
+
 def test_a_joint_does_not_stray_because_a_small_plate_shakes(rng):
     plate = np.array([[0, 0, 0], [0.05, 0, 0], [0, 0.05, 0], [0.05, 0.04, 0.01]])
     far, n = np.array([0.02, 0.3, 0.0]), 400

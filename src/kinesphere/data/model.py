@@ -59,6 +59,8 @@ class JointModel:
     """Movement axes besides twist (paper section 4): 1, 2 or 3; None to find out."""
     landmarks: tuple[Landmark, ...] = ()
     """Best first; the first whose labels are all in the recording counts."""
+    doubtful: bool = False
+    """Whether the two may not meet at all: motion alone told so, and was not sure of it."""
 
 
 @dataclass(frozen=True, eq=False)

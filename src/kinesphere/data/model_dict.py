@@ -81,6 +81,9 @@ class _Joint(_Strict):
         None, description="Movement axes besides twist; null to find out from the motion."
     )
     landmarks: tuple[_Landmark, ...] = Field((), description="Best first.")
+    doubtful: bool = Field(
+        False, description="Whether motion alone told that they meet, and was not sure of it."
+    )
 
 
 class _Statistics(_Strict):
@@ -153,7 +156,14 @@ def model_from_dict(content: Any, where: str = "model") -> TopologicalModel:
             name=m.name,
             segments=tuple(Segment(s.name, s.markers, s.shared) for s in m.segments),
             joints=tuple(
-                JointModel(j.name, j.parent, j.child, j.n_axes, tuple(map(_landmark, j.landmarks)))
+                JointModel(
+                    j.name,
+                    j.parent,
+                    j.child,
+                    j.n_axes,
+                    tuple(map(_landmark, j.landmarks)),
+                    j.doubtful,
+                )
                 for j in m.joints
             ),
             root=m.root,
@@ -198,6 +208,7 @@ def model_to_dict(model: TopologicalModel) -> dict[str, Json]:
                 "child": j.child,
                 "n_axes": j.n_axes,
                 "landmarks": [_landmark_dict(landmark) for landmark in j.landmarks],
+                **({"doubtful": True} if j.doubtful else {}),
             }
             for j in model.joints
         ],

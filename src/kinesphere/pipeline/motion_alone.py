@@ -117,10 +117,13 @@ def _assumed(motion: Motion, front: Facing) -> Motion:
     """Return a normalized motion whose history does not say that a user named the front."""
     *before, step = motion.history
     facing = {**step.findings["facing"], "decided_by": f"assumed ({front})"}  # type: ignore[dict-item]
-    return replace(
-        motion,
-        history=(*before, replace(step, findings={**step.findings, "facing": facing})),
+    told, assumed = f"front as told by user ({front})", f"the front that was assumed ({front})"
+    step = replace(
+        step,
+        findings={**step.findings, "facing": facing},
+        warnings=tuple(text.replace(told, assumed) for text in step.warnings),
     )
+    return replace(motion, history=(*before, step))
 
 
 def _first(error: Exception) -> str:

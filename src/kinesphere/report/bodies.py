@@ -11,8 +11,6 @@ STEP = "discovery"
 """Name of the step whose findings are drawn."""
 GOLDEN_ANGLE = 137.508
 """deg between one hue and the next: any number of colours, none near to those just before."""
-DOUBTFUL = 0.3
-"""Confidence below which a joint is drawn as doubtful, as discovery warns of it."""
 UNSURE = 0.5
 """Confidence below which a marker or body counts as unsure."""
 
@@ -126,8 +124,8 @@ def find_bodies(solution: Solution) -> Bodies | None:
             Line(
                 *places[joint["parent"]],
                 *places[joint["child"]],
-                f"{joint['confidence']:.2f}",
-                joint["confidence"] < DOUBTFUL,
+                _confidence(joint),
+                joint.get("doubtful", False),
                 f"{name.replace('_', ' ')}: cost {number_in_words(joint['cost_mm'], 'mm')}, "
                 f"next best {number_in_words(joint['next_best_mm'], 'mm')}",
             )
@@ -147,6 +145,13 @@ def find_bodies(solution: Solution) -> Bodies | None:
 def _findings(solution: Solution) -> dict[str, Any] | None:
     step = next((step for step in solution.history if step.name == STEP), None)
     return None if step is None else dict(step.findings)
+
+
+def _confidence(joint: Mapping[str, Any]) -> str:
+    """Return a joint's confidence; of a doubtful one without a rival a question mark."""
+    if joint.get("doubtful", False) and joint["next_best_mm"] is None:
+        return "?"
+    return f"{joint['confidence']:.2f}"
 
 
 def _row(

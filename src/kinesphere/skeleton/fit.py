@@ -1,6 +1,6 @@
 """A labelled recording in, a measured skeleton and its motion out."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from kinesphere.skeleton.adoption import adopt, find_adoptions
 from kinesphere.skeleton.chain import measure_chain
 from kinesphere.skeleton.far_centres import far_centres
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
+from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.report import describe_joint, describe_limb
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import scaled, size_share
@@ -96,6 +97,7 @@ def fit_skeleton(
         child: describe_joint(j, poses[j.model.parent], poses[child], bodies[child], settings)
         for child, j in joints.items()
     }
+    far = far_centres(joints, bodies)
     step = Step(
         name="skeleton",
         settings=settings_as_json(asked),
@@ -118,8 +120,8 @@ def fit_skeleton(
         warnings=(
             *tree.warnings,
             *_poor_fits(tree.limbs, solved.residuals, share),
-            *_open_centres(described.values(), {c: j.source for c, j in joints.items()}),
-            *far_centres(joints, bodies),
+            *_open_centres(described.values(), joints, far.limbs),
+            *far.warnings,
         ),
         version=kinesphere.__version__,
     )
@@ -157,20 +159,36 @@ def _poor_fits(limbs: Sequence[str], residuals: Array, share: float) -> tuple[st
     )
 
 
-def _open_centres(joints: Iterable[Joint], sources: Mapping[str, str]) -> tuple[str, ...]:
+def _open_centres(
+    joints: Iterable[Joint], measured: Mapping[str, MeasuredJoint], far: Container[str]
+) -> tuple[str, ...]:
     """Return the warnings that name the joints whose centres the motion does not tell.
 
     Parameters
     ----------
-    sources
-        Child limb → where its joint was expected, as `expected_centre` says it.
+    measured
+        Child limb → its joint and where that was expected, as `expected_centre` says it.
+    far
+        Child limbs of joints that have a warning of their own.
     """
     places: dict[str, list[str]] = {}
+    drawn: list[str] = []
     for joint in joints:
-        if joint.observability == "undetermined":
-            place = ELSEWHERE.get(sources[joint.child], "where the model's landmarks expect it")
+        if joint.observability != "undetermined" or joint.child in far:
+            continue
+        one = measured[joint.child]
+        if one.drawn_away:
+            drawn.append(f"{joint.name} ({one.off * 1e3:.0f} mm)")
+        else:
+            place = ELSEWHERE.get(one.source, "where the model's landmarks expect it")
             places.setdefault(place, []).append(joint.name)
-    return tuple(
+    told = [
         f"the motion does not tell the centre of {', '.join(names)}; it is {place}"
         for place, names in places.items()
-    )
+    ]
+    if drawn:
+        told.append(
+            "the motion hardly tells these centres, yet draws them away from where they are "
+            f"expected: {', '.join(drawn)}"
+        )
+    return tuple(told)

@@ -72,11 +72,13 @@ def find_groups(tree: Tree, bodies: dict[str, Body]) -> list[tuple[str, ...]]:
 
     Those beyond have three markers at least each: so many tell a pose but for what a line leaves
     open, and that the joint tells. Limbs with fewer, one after another, know too little of each
-    other.
+    other. A limb that may hang elsewhere stays out: hung wrongly, it would bend those beside it.
     """
     groups = []
     for joint in tree.joints:
-        beyond = tree.children(joint.child)
+        if joint.doubtful:
+            continue
+        beyond = [j.child for j in tree.joints if j.parent == joint.child and not j.doubtful]
         between = bodies[joint.parent].own_pose and not bodies[joint.child].own_pose
         enough = len(tree.markers[joint.child]) >= FEWEST and all(
             len(tree.markers[limb]) >= THREE for limb in beyond

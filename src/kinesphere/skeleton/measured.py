@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from kinesphere.data import Array, JointModel
 from kinesphere.geometry.centres import CentreFit
 
@@ -18,3 +20,13 @@ class MeasuredJoint:
     """m, how far off the expectation may be."""
     source: str
     """Where the expectation comes from."""
+
+    @property
+    def off(self) -> float:
+        """Return how far, in m, the centre is from where it was expected."""
+        return float(np.linalg.norm(self.fit.centre - self.expected))
+
+    @property
+    def drawn_away(self) -> bool:
+        """Whether the motion puts the centre elsewhere than expected, however little it tells."""
+        return self.off > self.spread

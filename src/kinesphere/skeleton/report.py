@@ -70,6 +70,8 @@ def verdict_on(
     degrees = np.rad2deg(moved)
     placed = f"placed by expectation ({measured.source})"
     if moved < np.deg2rad(settings.min_range_deg) or weak > 1:
+        if measured.drawn_away:
+            placed = f"{measured.off * 1e3:.0f} mm from where it is expected ({measured.source})"
         return "undetermined", f"range of motion {degrees:.0f}°, centre undetermined, {placed}"
     if weak == 1:
         return "hinge", (

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from kinesphere.skeleton.discovery.account import doubts_of_joints
 from kinesphere.skeleton.discovery.forest import Edge, contracted, rerooted
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
 from kinesphere.skeleton.discovery.joint_tree import find_forest
@@ -223,3 +224,17 @@ def test_joints_are_doubted_by_their_rivals_or_by_what_they_cost():
     assert not Edge(0, 1, 0.006, 0.010).doubtful
     assert Edge(0, 1, 0.009, np.inf).doubtful  # no rival speaks for it if it hardly fits itself
     assert not Edge(0, 1, 0.002, np.inf).doubtful
+
+
+def test_of_a_joint_without_a_rival_no_other_tree_is_said_to_be_likely():
+    rivalled, alone = doubts_of_joints(
+        [
+            ("elbow", Edge(0, 1, 0.009, 0.010)),
+            ("knee", Edge(0, 1, 0.009, np.inf)),
+            ("hip", Edge(0, 1, 0.002, np.inf)),
+        ]
+    )
+    assert "another tree" in rivalled
+    assert rivalled.endswith("at elbow (0.10)")
+    assert "another tree" not in alone
+    assert alone.endswith(": knee may be wrong")

@@ -71,6 +71,7 @@ def account_of(
                 "cost_mm": _mm(unit * forest_edge.cost),
                 "next_best_mm": _mm(unit * forest_edge.next_best),
                 "confidence": _short(forest_edge.confidence),
+                "doubtful": forest_edge.doubtful,
                 "n_axes": joint.n_axes,
             }
             for joint in model.joints
@@ -125,16 +126,9 @@ def doubts_about(
             f"{_count(partition)} bodies were found, but their number hardly stands out "
             f"(confidence {sure:.2f}); set discovery.bodies where it is known"
         )
-    shaky = [
-        f"{joint.name} ({_rivalled(edge)})"
-        for joint in model.joints
-        if (edge := _edge(partition, joint.parent, joint.child, limb_of)).doubtful
-    ]
-    if shaky:
-        doubts.append(
-            f"another tree of bodies is nearly as likely, and joints may be wrong, at "
-            f"{', '.join(shaky)}"
-        )
+    doubts += doubts_of_joints(
+        [(j.name, _edge(partition, j.parent, j.child, limb_of)) for j in model.joints]
+    )
     if faint:
         doubts.append(
             f"hardly anything shows a joint at {', '.join(faint)}: a limb there stays about where "
@@ -174,11 +168,23 @@ def _edge(partition: Partition, parent: str, child: str, limb_of: dict[int, str]
     return next(edge for edge in partition.forest.edges if {edge.a, edge.b} == ends)
 
 
-def _rivalled(edge: Edge) -> str:
-    """Return a joint's confidence for a person; of one that has no rival, why it is doubted."""
-    if np.isfinite(edge.next_best):
-        return f"{edge.confidence:.2f}"
-    return "no other is left, and this one hardly fits"
+def doubts_of_joints(edges: Sequence[tuple[str, Edge]]) -> list[str]:
+    """Return what is said of doubtful joints: of those with a rival, and of those without."""
+    shaky = [(name, edge) for name, edge in edges if edge.doubtful]
+    rivalled = [f"{name} ({e.confidence:.2f})" for name, e in shaky if np.isfinite(e.next_best)]
+    alone = [name for name, edge in shaky if not np.isfinite(edge.next_best)]
+    told = []
+    if rivalled:
+        told.append(
+            "another tree of bodies is nearly as likely, and joints may be wrong, at "
+            f"{', '.join(rivalled)}"
+        )
+    if alone:
+        told.append(
+            f"these bodies hardly fit a joint between them, yet no others are left for one: "
+            f"{', '.join(alone)} may be wrong"
+        )
+    return told
 
 
 def _rms(values: Array) -> float:

@@ -59,6 +59,7 @@ def tree_model(
                     costs.pose(partition.bodies[edge.a]), costs.pose(partition.bodies[body])
                 ),
                 landmarks=(landmark,) if over else (),
+                doubtful=edge.doubtful,
             )
         )
     return TopologicalModel(
