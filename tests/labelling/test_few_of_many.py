@@ -10,7 +10,7 @@ from tests.labelling.conftest import actor, lower_body
 
 from kinesphere import read
 from kinesphere.geometry.signature import scale_of, signature
-from kinesphere.labelling import built_in_model, match_labels
+from kinesphere.labelling import built_in_model, label, match_labels
 from kinesphere.labelling.layout import layout_of
 from kinesphere.labelling.pair_statistics import match_pair_statistics
 from kinesphere.labelling.solving import best_scale, scale_by_labels
@@ -102,3 +102,14 @@ def test_plug_in_gait_by_the_model_of_all_its_additions(recordings, file, n):
     assert len(worn) == n
     assert_array_equal(match.labels, truth)
     assert (match.confidence >= 0.1).all()
+
+
+@pytest.mark.real
+def test_a_whole_capture_of_plug_in_gait_keeps_its_labels_to_the_end(recordings):
+    walk = read(recordings / "plugin-gait" / "PiG_Motion-FlatFoot-Full.c3d")
+    names = [f"*{i}" for i in range(walk.n_markers)]
+    found = label(replace(walk, labels=tuple(names)), built_in_model("plugin-gait"))
+    for column, name in enumerate(walk.labels):
+        if walk.seen[:, column].any():
+            given = found.markers[:, found.labels.index(name)]
+            assert_array_equal(given, walk.markers[:, column])

@@ -36,7 +36,7 @@ from kinesphere.labelling.solving import continued, finished, refined
 from kinesphere.labelling.template import LEAST_LABELS
 from kinesphere.labelling.verdict import MARGIN as MARGIN
 from kinesphere.labelling.verdict import verdict
-from kinesphere.labelling.worn import is_worn, numbered, smaller_layout
+from kinesphere.labelling.worn import is_worn, layout_held, numbered, smaller_layout
 
 
 def match_pair_statistics(
@@ -99,6 +99,7 @@ def match_pair_statistics(
         solved, some, layout = _of_anybody(points[:, kept], found, layout, model)
         kept = kept[some]
     else:
+        layout = layout_held(model, layout, start[kept])
         back = np.full(len(model.labels) + 1, -1, dtype=np.int64)
         back[layout.into] = np.arange(layout.template.n)
         solved = continued(found, layout, back[start[kept]])

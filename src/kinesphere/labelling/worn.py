@@ -36,6 +36,21 @@ def smaller_layout(model: TopologicalModel, layout: Layout, n_points: int) -> La
     return layout_of(model, min(fitting, key=lambda labels: (len(labels), labels)))
 
 
+def layout_held(model: TopologicalModel, layout: Layout, start: Labels) -> Layout:
+    """Return the smaller layout if labels of points, (n_points,), nearly fill it and are all of it.
+
+    Parameters
+    ----------
+    start : (n_points,)
+        By index into the model's labels, −1 for none.
+    """
+    smaller = smaller_layout(model, layout, len(start))
+    held = {model.labels[i] for i in start if i >= 0}
+    if smaller is None or len(held) < FILLED * smaller.template.n:
+        return layout
+    return smaller if held <= set(smaller.template.labels) else layout
+
+
 def is_worn(found: Signature, smaller: Labels, whole: Labels, layout: Layout) -> bool:
     """Tell whether labels of a smaller layout fit about as well as those of the whole one.
 
