@@ -43,11 +43,6 @@ def warnings_of(
             f"the default position does not fully show {', '.join(alignment.elsewhere)}; aligned "
             "with the limb before it, in the frames that show both"
         )
-    if unknown := [name for name, pitch in alignment.soles.items() if pitch is None]:
-        said.append(
-            f"no marker shows the heel of {', '.join(unknown)}, which never rests flat on the "
-            "floor: the pitch of the foot is that of its markers"
-        )
     if alignment.never:
         said.append(f"{', '.join(alignment.never)} could not be aligned and keeps its frame")
     return tuple(said)
@@ -85,7 +80,4 @@ def findings_of(
         "facing": verdict.as_json(),
         "limbs_without_twist": list(alignment.twistless),
         "limbs_off_ideal_deg": {n: float(np.rad2deg(a)) for n, a in alignment.off_ideal.items()},
-        "feet_against_sole_deg": {
-            n: None if a is None else float(np.rad2deg(a)) for n, a in alignment.soles.items()
-        },
     }

@@ -7,9 +7,13 @@ import numpy as np
 from kinesphere.data import Array, Codes, Mask, PoseFlag
 from kinesphere.normalization.anatomy import Anatomy
 from kinesphere.normalization.averaging import robust_mean_rotations
-from kinesphere.normalization.limb_frames import canonical_direction, minimal_frame, paper_frame
+from kinesphere.normalization.limb_frames import (
+    canonical_direction,
+    levelled,
+    minimal_frame,
+    paper_frame,
+)
 from kinesphere.normalization.samples import Samples
-from kinesphere.normalization.soles import find_rest, turned_by
 from kinesphere.normalization.vectors import angle_between
 
 _NEAR = np.deg2rad(5.0)  # postures this much farther from the ideal than the best still count
@@ -35,8 +39,6 @@ class Alignment:
     in the frames that do."""
     twistless: list[str] = field(default_factory=list)
     """Limbs whose twist no frame tells."""
-    soles: dict[str, float | None] = field(default_factory=dict)
-    """Foot without a heel → rad of pitch of its line against its sole; None where nothing tells."""
     never: list[str] = field(default_factory=list)
     """Limbs that could not be aligned; they keep their frame."""
 
@@ -82,12 +84,7 @@ def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Ali
         if base_from_limb is None:
             found.never.append(name)
             continue
-        pitch = 0.0
-        if limb in anatomy.heelless:
-            rest = find_rest(samples, limb)
-            found.soles[name] = rest.pitch if rest.tells else None
-            pitch = found.soles[name] or 0.0
-        base_from_new, found.along[limb], off = _frame(anatomy, limb, base_from_limb, pitch, rule)
+        base_from_new, found.along[limb], off = _frame(anatomy, limb, base_from_limb, rule)
         found.turns[limb] = base_from_limb.T @ base_from_new
         found.shifts[limb] = np.nan_to_num(anatomy.mid_point(limb))
         found.off_ideal[name] = off
@@ -106,19 +103,16 @@ def twist_told(flags: Codes) -> Mask:
 
 
 def _frame(
-    anatomy: Anatomy, limb: int, base_from_limb: Array, pitch: float, rule: str
+    anatomy: Anatomy, limb: int, base_from_limb: Array, rule: str
 ) -> tuple[Array, Array, float]:
-    """Return a limb's new frame and long axis, and how far it points from the ideal, rad.
-
-    ``pitch``: rad, of a foot's line against its sole.
-    """
+    """Return a limb's new frame and long axis, and how far it points from the ideal, rad."""
     line = anatomy.directions[limb]
     if not np.isfinite(line).all():  # pelvis and trunk, or a root, or a limb with no extent at all
         return np.eye(3), np.array([0.0, 1.0, 0.0]), 0.0
     name, at_end = anatomy.skeleton.limb_names[limb], not anatomy.distal_joints[limb]
     points = base_from_limb @ line
-    if pitch:
-        points = turned_by(points, pitch)
+    if limb in anatomy.heelless:
+        points = levelled(points)
     ideal = canonical_direction(name, points, at_end=at_end)
     off = float(angle_between(ideal, points))
     if rule == "paper":

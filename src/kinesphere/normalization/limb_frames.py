@@ -34,6 +34,17 @@ def canonical_direction(name: str, in_body: Array, *, at_end: bool) -> Array:
     return np.array([0.0, 1.0 if in_body[1] > 0 else -1.0, 0.0])
 
 
+def levelled(points: Array) -> Array:
+    """Return a direction without its pitch, (3,) in the body frame; as it is where it is steep.
+
+    A foot without a marker at its heel seems to point down, from the ankle to the toes: by 20°
+    where the same feet with heels are level to 2°. Who stands has it flat on the floor.
+    """
+    level = points * [1.0, 0.0, 1.0]
+    length = float(np.linalg.norm(level))
+    return points if length < np.cos(STEEP) else level / length
+
+
 def minimal_frame(points: Array, ideal: Array) -> Array:
     """Return a limb's frame: the body frame turned by the least rotation onto the limb.
 
