@@ -7,12 +7,7 @@ import numpy as np
 from kinesphere.data import Array, Codes, Mask, PoseFlag
 from kinesphere.normalization.anatomy import Anatomy
 from kinesphere.normalization.averaging import robust_mean_rotations
-from kinesphere.normalization.limb_frames import (
-    canonical_direction,
-    levelled,
-    minimal_frame,
-    paper_frame,
-)
+from kinesphere.normalization.limb_frames import canonical_direction, minimal_frame, paper_frame
 from kinesphere.normalization.samples import Samples
 from kinesphere.normalization.vectors import angle_between
 
@@ -111,8 +106,6 @@ def _frame(
         return np.eye(3), np.array([0.0, 1.0, 0.0]), 0.0
     name, at_end = anatomy.skeleton.limb_names[limb], not anatomy.distal_joints[limb]
     points = base_from_limb @ line
-    if limb in anatomy.heelless:
-        points = levelled(points)
     ideal = canonical_direction(name, points, at_end=at_end)
     off = float(angle_between(ideal, points))
     if rule == "paper":

@@ -123,17 +123,6 @@ class Anatomy:
         return np.array(rows)
 
     @cached_property
-    def heelless(self) -> frozenset[int]:
-        """Indices of the feet that no marker shows behind the ankle: nothing tells their sole."""
-        found = set()
-        for i, limb in enumerate(self.skeleton.limbs):
-            if without_side(limb.name) == "foot" and len(limb.marker_positions):
-                ahead = (limb.marker_positions - self.proximal_ends[i]) @ self.directions[i]
-                if not (ahead < 0).any():  # False where NaN
-                    found.add(i)
-        return frozenset(found)
-
-    @cached_property
     def distal_ends(self) -> Array:
         """(n_limbs, 3) m: the joint away from the parent, their mean, or the far end of a chain.
 

@@ -6,8 +6,6 @@ from kinesphere.data import Array
 from kinesphere.geometry.rotations import rotation_between
 from kinesphere.normalization.anatomy import CANONICAL, without_side
 
-STEEP = np.deg2rad(45.0)
-"""rad of pitch from which a foot is on its toes, or of somebody who lies, and is left alone."""
 _FOOT_LIKE = 0.7  # share of forward in the direction from which an unnamed chain's end is a foot
 
 
@@ -32,17 +30,6 @@ def canonical_direction(name: str, in_body: Array, *, at_end: bool) -> Array:
     if at_end and in_body[0] > _FOOT_LIKE:
         return np.array([1.0, 0.0, 0.0])
     return np.array([0.0, 1.0 if in_body[1] > 0 else -1.0, 0.0])
-
-
-def levelled(points: Array) -> Array:
-    """Return a direction without its pitch, (3,) in the body frame; as it is where it is steep.
-
-    A foot without a marker at its heel seems to point down, from the ankle to the toes: by 20°
-    where the same feet with heels are level to 2°. Who stands has it flat on the floor.
-    """
-    level = points * [1.0, 0.0, 1.0]
-    length = float(np.linalg.norm(level))
-    return points if length < np.cos(STEEP) else level / length
 
 
 def minimal_frame(points: Array, ideal: Array) -> Array:
