@@ -1,7 +1,5 @@
 """Limb frames by the conventions' rule and by the paper's, whose defects are on record here."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +7,6 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from kinesphere.geometry.rotations import rotation_angle
-from kinesphere.normalization import normalize
 from kinesphere.normalization.limb_frames import (
     canonical_direction,
     minimal_frame,
@@ -86,36 +83,3 @@ def test_an_unnamed_limb_points_up_down_or_forward():
     assert_allclose(canonical_direction("limb_07", unit(0.9, -0.3, 0.2), at_end=True), [1, 0, 0])
     assert_allclose(canonical_direction("limb_07", unit(0.9, -0.3, 0.2), at_end=False), [0, -1, 0])
     assert_allclose(canonical_direction("left_foot", DOWN, at_end=True), [1, 0, 0])
-
-
-def heelless(motion):
-    """Return the motion with feet whose last marker, the heel, is not there."""
-    limbs = tuple(
-        replace(limb, markers=limb.markers[:-1], marker_positions=limb.marker_positions[:-1])
-        if limb.name.endswith("foot")
-        else limb
-        for limb in motion.skeleton.limbs
-    )
-    return replace(motion, skeleton=replace(motion.skeleton, limbs=limbs))
-
-
-@pytest.mark.parametrize("pitch", [-0.2, -0.36, 0.1])
-def test_a_foot_without_a_heel_is_level_where_the_body_stands(doll, tools, pitch):
-    """Of who stands the sole is level; the line from the ankle to the toes is not."""
-    feet = {"left_foot": (1.0, pitch, -0.15), "right_foot": (1.0, pitch, 0.10)}
-    it = doll(stance=tools.stance | feet)
-    with_heels, without = normalize(it.motion), normalize(heelless(it.motion))
-    for name in feet:
-        i = it.index(name)
-        for result, tilt in ((with_heels, pitch), (without, 0.0)):
-            body, foot = result.rotations[:, 0], result.rotations[:, i]
-            ahead = np.swapaxes(body, -1, -2) @ foot[:, :, 0, None]
-            way = np.array(feet[name]) * [1, 0, 1] + [0, tilt, 0]
-            assert_allclose(ahead[..., 0], [way / np.linalg.norm(way)] * len(ahead), atol=1e-9)
-
-
-def test_a_foot_on_its_toes_is_left_as_it_is(doll, tools):
-    feet = {f"{side}_foot": (1.0, -1.3, 0.0) for side in ("left", "right")}
-    it = doll(stance=tools.stance | feet)
-    found, same = normalize(heelless(it.motion)), normalize(it.motion)
-    assert_allclose(found.rotations, same.rotations, atol=1e-9)
