@@ -7,11 +7,12 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array, MarkerStatistics, TopologicalModel
+from kinesphere.data import Array, TopologicalModel
 from kinesphere.errors import BadModel
 from kinesphere.labelling.pooling import DEVIATION_FLOOR as DEVIATION_FLOOR
 from kinesphere.labelling.pooling import pooled
 from kinesphere.labelling.postures import postures_of, spread_of_distances, steadiness
+from kinesphere.labelling.quadruples import stable_quadruples
 
 DISTANCE_SHARE = 0.12
 """Spread between people of a mean distance, as a share of it, beside that between postures."""
@@ -38,8 +39,6 @@ UNJOINTED = (0.02, 0.5, 0.3)
 postures then, the spread of logarithms of deviations, and what a quadruple counts."""
 PRIOR = 2
 """Recordings that these spreads count as, beside those that the template is learnt from."""
-QUADRUPLES = 2000
-"""Most quadruples looked at: the tightest."""
 LEAST_LABELS = 4
 """Labels a template needs: fewer have no handedness, and three distances fit anything."""
 
@@ -110,7 +109,7 @@ def template_of(model: TopologicalModel, labels: Sequence[str] | None = None) ->
     """
     known = _known_labels(model, labels)
     pool = pooled(model.statistics, known)
-    quadruples, handed = _quadruples(model.statistics, known, pool.mean)
+    quadruples, handed = stable_quadruples(model.statistics, known, pool.mean)
     bent, told = _told_by_joints(model, known, pool.mean, quadruples)
     floor, log_spread = (DISTANCE_FLOOR, DEVIATION_SPREAD) if model.joints else UNJOINTED[:2]
     prior = (
@@ -191,41 +190,3 @@ def _known_labels(model: TopologicalModel, labels: Sequence[str] | None) -> tupl
             "are needed to recognise a layout"
         )
     return known
-
-
-def _quadruples(
-    statistics: Sequence[MarkerStatistics], labels: tuple[str, ...], mean: Array
-) -> tuple[NDArray[np.int64], Array]:
-    """Return the quadruples that every recording which has the four labels finds stable."""
-    at = {label: i for i, label in enumerate(labels)}
-    signs: dict[tuple[int, ...], list[float]] = {}
-    able: list[set[int]] = []
-    for one in statistics:
-        number = np.array([at.get(label, -1) for label in one.labels], dtype=np.int64)
-        seen = np.isfinite(one.mean).sum(axis=1) > 1
-        able.append({int(number[i]) for i in np.flatnonzero(seen) if number[i] >= 0})
-        if not len(one.quadruples):
-            continue
-        fours = number[one.quadruples]
-        order = np.argsort(fours, axis=1, kind="stable")
-        turned = one.handedness * _parity(order)
-        for four, sign, raw in zip(np.sort(fours, axis=1), turned, fours, strict=True):
-            if (raw >= 0).all():
-                signs.setdefault(tuple(int(x) for x in four), []).append(float(sign))
-    kept = []
-    for four, found in signs.items():
-        could = sum(set(four) <= some for some in able)
-        if len(found) == could and abs(sum(found)) > 0.9 * len(found):
-            around = sum(mean[a, b] for i, a in enumerate(four) for b in four[i + 1 :])
-            kept.append((around, four, sum(found) / len(found)))
-    kept = sorted(kept)[:QUADRUPLES]
-    fours = np.array([four for _, four, _ in kept], dtype=np.int64).reshape(-1, 4)
-    return fours, np.array([sign for _, _, sign in kept], dtype=np.float64)
-
-
-def _parity(order: NDArray[np.intp]) -> Array:
-    """Return +1 or −1 for each row's permutation of four."""
-    inversions = sum(
-        (order[:, i] > order[:, j]).astype(int) for i in range(4) for j in range(i + 1, 4)
-    )
-    return np.where(np.asarray(inversions) % 2 == 0, 1.0, -1.0)
