@@ -145,7 +145,8 @@ def _starts(
     """Return what to begin with: as measured, and others where a limb is on a line.
 
     Nothing is known yet of the turn about that line: joints on it move least with that. Those are
-    as expected, and where on the line markers beyond keep their distances best.
+    as expected, and where on the line markers beyond keep their distances best. Joints off it tell
+    the turn.
     """
     if not bodies[group[1]].twist_open:
         return [start]
@@ -161,7 +162,8 @@ def _starts(
         centres[body] = ways[mean_seen(np.abs(strays)).mean(axis=1).argmin()]
         first += len(start.shapes[body])
     placed = [start._replace(centres=one) for one in (expected, centres)]
-    return [start, *placed, turned_from_beyond(start, points)]
+    turned = turned_from_beyond(start, points)
+    return [start, *placed, *([] if turned is None else [turned])]
 
 
 def _moved(rotations: Array, parent: int, child: int) -> float:
