@@ -25,7 +25,7 @@ def turns(rng, scale):
 
 
 def limbs(rng, hands):
-    """True limbs that hang together, and their markers."""
+    """Return limbs that hang together, the truth, and their markers."""
     upper = turns(rng, 0.3)
     middle = upper @ turns(rng, 0.6)
     beyond = [middle @ turns(rng, 0.6) for _ in range(hands)]
@@ -44,7 +44,7 @@ def limbs(rng, hands):
 
 
 def mistaken(rng, truth):
-    """The same with the middle turned anyhow about its line, and joints beyond elsewhere."""
+    """Return them with the middle turned anyhow about its line, joints beyond elsewhere."""
     about = rotation_about(np.array([0.0, 1.0, 0.0]), rng.uniform(-1.5, 1.5, FRAMES))
     rotations = truth.rotations.copy()
     rotations[:, 1] = rotations[:, 1] @ about
@@ -52,9 +52,7 @@ def mistaken(rng, truth):
     shapes = [shape + one for shape, one in zip(truth.shapes[2:], off, strict=True)]
     centres = truth.centres.copy()
     centres[2:] += 0.05
-    return truth._replace(
-        shapes=(*truth.shapes[:2], *shapes), centres=centres, rotations=rotations
-    )
+    return truth._replace(shapes=(*truth.shapes[:2], *shapes), centres=centres, rotations=rotations)
 
 
 @pytest.mark.parametrize("hands", [1, 2])
