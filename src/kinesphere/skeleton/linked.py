@@ -79,8 +79,9 @@ def find_groups(tree: Tree, bodies: dict[str, Body]) -> list[tuple[str, ...]]:
     groups = []
     for joint in tree.joints:
         ends = [other for other in tree.joints if other.parent == joint.child]
-        if not (joint.doubtful and all(other.doubtful for other in ends)):
-            ends = [] if joint.doubtful else [other for other in ends if not other.doubtful]
+        sure = [other for other in ends if not other.doubtful]
+        if sure or not joint.doubtful:
+            ends = [] if joint.doubtful else sure
         beyond = [other.child for other in ends]
         between = bodies[joint.parent].own_pose and not bodies[joint.child].own_pose
         enough = len(tree.markers[joint.child]) >= FEWEST and all(
