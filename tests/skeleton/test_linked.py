@@ -136,11 +136,21 @@ def test_a_limb_that_may_hang_elsewhere_bends_none_beside_it(rng):
     assert wrist_off(beside, truth) < 0.0035
 
 
+def doubting(*numbers):
+    joints = [replace(j, doubtful=i in numbers) for i, j in enumerate(model().joints)]
+    return replace(model(), joints=tuple(joints))
+
+
+def test_where_all_joints_are_doubtful_none_is_kept_apart_for_it(rng):
+    markers, truth = arm(rng, 0.003)
+    sure, doubted = solved(markers), solved(markers, doubting(0, 1))
+    assert_allclose(doubted.origins, sure.origins, rtol=0, atol=0)
+    assert wrist_off(doubted, truth) < wrist_off(solved(markers, link_limbs=False), truth)
+
+
 @pytest.mark.parametrize("doubtful", [0, 1])
-def test_a_group_has_no_doubtful_joint(rng, doubtful):
-    arms = model()
-    joints = [replace(j, doubtful=i == doubtful) for i, j in enumerate(arms.joints)]
+def test_a_sure_joint_is_in_no_group_with_a_doubtful_one(rng, doubtful):
     markers, _ = arm(rng, 0.02)
-    linked = solved(markers, replace(arms, joints=tuple(joints)))
+    linked = solved(markers, doubting(doubtful))
     alone = solved(markers, link_limbs=False)
     assert_allclose(linked.origins, alone.origins, rtol=0, atol=0)

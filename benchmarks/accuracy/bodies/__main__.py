@@ -16,6 +16,7 @@ from benchmarks.accuracy.bodies.changes import change_rows
 from benchmarks.accuracy.bodies.cost import Cost, cost_rows, plot
 from benchmarks.accuracy.bodies.functional import functional_rows
 from benchmarks.accuracy.bodies.hiding import hiding_rows
+from benchmarks.accuracy.bodies.linked_limbs import linked_figures
 from benchmarks.accuracy.bodies.page import bars, page
 from benchmarks.accuracy.bodies.partitions import Row, rows
 from benchmarks.accuracy.bodies.perturbed import perturbed_rows
@@ -51,6 +52,7 @@ SECTIONS: dict[str, Callable[[], Any]] = {
     "perturbed": lambda: [asdict(row) for row in perturbed_rows()],
     "centres": lambda: [asdict(row) for row in centre_rows()],
     "arm": arm_figures,
+    "linked": linked_figures,
     "functional": lambda: [asdict(row) for row in functional_rows()],
     "hiding": lambda: [asdict(row) for row in hiding_rows()],
 }

@@ -9,6 +9,7 @@ import numpy as np
 
 from benchmarks.accuracy.bodies.centres import centres_section
 from benchmarks.accuracy.bodies.changes import changes_section
+from benchmarks.accuracy.bodies.linked_limbs import linked_section
 from benchmarks.accuracy.bodies.perturbed import perturbed_section
 
 SIZES = [2, 3, 4]
@@ -127,6 +128,7 @@ def page(found: dict[str, Any]) -> str:
             centres_section(found["centres"]),
             _functional(found["functional"], found["peer"]),
             _arm(found["arm"]),
+            linked_section(found["linked"]),
             _hiding(found["hiding"]),
             _cost(found["cost"]),
         ]
@@ -227,8 +229,10 @@ def _arm(arm: dict[str, Any]) -> str:
         f"between the halves of the trial, in the better-marked limb: {apart}. The three markers "
         "of the last body lie within 5 mm of a line, so their own pose hardly tells a turn about "
         "it.\n\n"
-        f"Limb by limb (`skeleton.link_limbs=false`) they are {_apart(arm['limb_by_limb_mm'])} "
-        f"apart; {_apart(arm['told_mm'])} are told.\n\n"
+        f"In the limb as the whole trial has it posed they are "
+        f"{_apart(arm['posed_by_whole_mm'])} apart. Limb by limb (`skeleton.link_limbs=false`), "
+        f"shapes laid on each other, {_apart(arm['limb_by_limb_mm'])}. "
+        f"Told are {_apart(arm['told_mm'])}.\n\n"
         "What halves can tell: twins of the arm, its own motion about known centres, with what its "
         "markers stray put back on. *turned*: every marker's strays by a rotation of its own, so "
         "that they go with the pose as skin does; *shifted*: from another time of the half "

@@ -14,6 +14,7 @@ from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 from kinesphere.skeleton.linked_joint import LinkedJoint
 from kinesphere.skeleton.linked_poses import linkage_of, markers_of, parents_in
+from kinesphere.skeleton.linked_start import turned_from_beyond
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree
@@ -72,13 +73,16 @@ def find_groups(tree: Tree, bodies: dict[str, Body]) -> list[tuple[str, ...]]:
 
     Those beyond have three markers at least each: so many tell a pose but for what a line leaves
     open, and that the joint tells. Limbs with fewer, one after another, know too little of each
-    other. A limb that may hang elsewhere stays out: hung wrongly, it would bend those beside it.
+    other. A limb that may hang elsewhere stays out beside sure ones, for hung wrongly, it would
+    bend those; where no joint is sure, limb by limb they would not be surer.
     """
     groups = []
     for joint in tree.joints:
-        if joint.doubtful:
-            continue
-        beyond = [j.child for j in tree.joints if j.parent == joint.child and not j.doubtful]
+        ends = [other for other in tree.joints if other.parent == joint.child]
+        sure = [other for other in ends if not other.doubtful]
+        if sure or not joint.doubtful:
+            ends = [] if joint.doubtful else sure
+        beyond = [other.child for other in ends]
         between = bodies[joint.parent].own_pose and not bodies[joint.child].own_pose
         enough = len(tree.markers[joint.child]) >= FEWEST and all(
             len(tree.markers[limb]) >= THREE for limb in beyond
@@ -115,14 +119,14 @@ def fit_group(
     points = markers_of(group, bodies, sample)[known]
     fits = [
         fit_linkage(
-            start._replace(centres=centres),
+            begun,
             points,
             expected,
             np.array([0.0, *(1 / j.spread**2 for j in measured)]),
             float(np.mean(n_poses)) / settings.soft_tissue**2,
         )
         # a limb on a line has put the next joint anywhere round it
-        for centres in _starts(group, start, expected, bodies, points)
+        for begun in _starts(group, start, expected, bodies, points)
     ]
     fit = min(fits, key=lambda one: one.scale)
     off = np.linalg.norm(fit.linkage.centres - expected, axis=1)[1:]
@@ -138,14 +142,15 @@ def _starts(
     expected: Array,
     bodies: dict[str, Body],
     points: Array,
-) -> list[Array]:
-    """Return the centres to begin with: as measured, and where a limb is on a line, others, too.
+) -> list[Linkage]:
+    """Return what to begin with: as measured, and others where a limb is on a line.
 
     Nothing is known yet of the turn about that line: joints on it move least with that. Those are
-    as expected, and where on the line markers beyond keep their distances best.
+    as expected, and where on the line markers beyond keep their distances best. Joints off it tell
+    the turn.
     """
     if not bodies[group[1]].twist_open:
-        return [start.centres]
+        return [start]
     shape, centres = start.shapes[1], expected.copy()
     far = shape[np.linalg.norm(shape, axis=1).argmax()]
     ways = np.linspace(0.0, 2.0, WAYS)[:, None] * far
@@ -157,7 +162,9 @@ def _starts(
         strays = away - np.stack([median_seen(one) for one in np.moveaxis(away, 1, 0)])
         centres[body] = ways[mean_seen(np.abs(strays)).mean(axis=1).argmin()]
         first += len(start.shapes[body])
-    return [start.centres, expected, centres]
+    placed = [start._replace(centres=one) for one in (expected, centres)]
+    turned = turned_from_beyond(start, points)
+    return [start, *placed, *([] if turned is None else [turned])]
 
 
 def _moved(rotations: Array, parent: int, child: int) -> float:
