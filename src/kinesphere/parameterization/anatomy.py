@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from kinesphere.data import Array, Skeleton
+from kinesphere.data import Array, Joint, Skeleton
 
 SIDED = ("upper_arm", "forearm", "hand", "thigh", "shank", "foot")
 LIMBS = frozenset({"pelvis", "trunk", "head"}) | {
@@ -98,6 +98,22 @@ def declared_n_axes(name: str, counts: Mapping[str, int]) -> int | None:
     if kind is None:
         return None
     return counts.get(kind, N_AXES[kind])
+
+
+def n_told(joint: Joint) -> int:
+    """Return how many of the axes that move a joint's limb were told by a movement.
+
+    A second axis that was added to a hinge does not count, nor what a limb turns about itself.
+    """
+    if joint.axes is None or joint.axes_source == "body":
+        return 0
+    told = joint.n_axes - sum(joint.axes_assumed)
+    return min(told, wanted_n_axes(joint.name))
+
+
+def wanted_n_axes(name: str) -> int:
+    """Return how many axes move the limb of a joint of that name; two where nobody named it."""
+    return N_AXES.get(without_side(name), 2)
 
 
 def named_axes(axes: Array, name: str) -> tuple[Array, list[int]]:

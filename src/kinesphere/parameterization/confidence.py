@@ -65,6 +65,27 @@ class AxesQuality:
             readings=self.readings[at],
         )
 
+    def only(self, told: int, at: int) -> "AxesQuality":
+        """Return the same for two axes of which only the one at ``told`` is known, now ``at``.
+
+        The other's figures are NaN, and so is its uncertainty.
+        """
+
+        def placed(values: Array) -> Array:
+            both = np.full(2, np.nan)
+            both[at] = values[told]
+            return both
+
+        return AxesQuality(
+            labels=np.where(self.labels == told, at, -1),
+            ranges=placed(self.ranges),
+            conditioning=placed(self.conditioning),
+            explained=self.explained,
+            halves=placed(self.halves),
+            heights=placed(self.heights),
+            readings=placed(self.readings),
+        )
+
 
 def assess_axes(
     samples: JointSamples, axes: Array, find: Finder, enough: float = np.inf

@@ -25,6 +25,7 @@ from kinesphere.parameterization.halves import (
     early_share,
 )
 from kinesphere.parameterization.main_movements import long_phases, main_movements
+from kinesphere.parameterization.one_of_two import REPEATED, axis_told
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import (
     AngleSettings,
@@ -34,7 +35,6 @@ from kinesphere.parameterization.settings import (
 from kinesphere.parameterization.view import JointView, view_halves
 
 COMPARABLE = 0.5  # of the whole arc: a half that moves less far is no judge of the whole
-REPEATED = 2  # phases of each main movement: one alone contradicts nothing, where there are more
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +49,8 @@ class MovementAxes:
     """Why these axes should not serve, each a clause."""
     remark: str = ""
     """What a person should know of axes that serve: how far two halves contradict each other."""
+    told: int | None = None
+    """Which of two axes serves although the other does not: `axis_told`."""
 
     def doubtful(self, options: AxesSettings) -> bool:
         """Return whether anything speaks against these axes."""
@@ -114,33 +116,54 @@ def _judged(
     doubtful = 2 * np.deg2rad(options.largest_uncertainty)
     # a search in free motion takes seconds: once halves contradict each other that is that
     quality = assess_axes(samples, axes, find, doubtful if free else np.inf)
-    if len(axes) < n_axes:
-        told = f"only {len(axes)} of {n_axes} main movements is there"
-        return MovementAxes(axes, quality, (told,))
     if n_axes == 1 and options.refine and options.method in BY_ORIENTATION:
         quality = replace(quality, readings=np.array([other_reading(samples, axes[0])]))
-    if free:
-        quality = replace(quality, ranges=_free_ranges(view, axes))
-        options = replace(options, smallest_explained=0.0)
     nominal = nominal_axes(view.name, axes) if view.human else None
     positions = view.samples.positions
-    doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
+    if len(axes) < n_axes:
+        doubts = [f"only {len(axes)} of {n_axes} main movements is there"]
+    else:
+        if free:
+            quality = replace(quality, ranges=_free_ranges(view, axes))
+            options = replace(options, smallest_explained=0.0)
+        doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
     if nominal is not None and n_axes == 1 and worse_than_body(axes[0], nominal[0], positions):
         doubts.append("the body frame's axis suits all the movement clearly better")
-    remark = ""
+    pair = n_axes == 2 and not free
+    told = axis_told(quality, axes, view, options) if doubts and pair else None
+    if doubts and told is None:
+        return MovementAxes(axes, quality, tuple(doubts))
+    quality, apart_by = _contradicted(view, samples, axes, n_axes, quality, search, settings)
     if not doubts:
-        halves = (half.samples for half in view_halves(view, settings))
-        off, arcs = contradiction(halves, axes, search)
-        shares = early_share(samples, quality.labels, n_axes, *parted(len(positions)))
-        comparable = arcs >= COMPARABLE * quality.ranges
-        if n_axes > 1:  # main movements are made one after another: a half may lack one
-            comparable &= np.abs(shares - 0.5) <= 0.5 - LEAST_SHARE
-        halves_apart = np.fmax(quality.halves, np.where(comparable, off, np.nan))
-        quality = replace(quality, halves=halves_apart)
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
-        said = np.where(arcs >= np.deg2rad(options.smallest_range), off, 0.0)
-        remark = _remark(np.fmax(halves_apart, said), options)
-    return MovementAxes(axes, quality, tuple(doubts), remark)
+    told = axis_told(quality, axes, view, options, apart_by) if doubts and pair else None
+    remark = _remark(apart_by if told is None else apart_by[[told]], options)
+    return MovementAxes(axes, quality, tuple(doubts), remark, told)
+
+
+def _contradicted(
+    view: JointView,
+    samples: JointSamples,
+    axes: Array,
+    n_axes: int,
+    quality: AxesQuality,
+    search: Searcher,
+    settings: ParameterizationSettings,
+) -> tuple[AxesQuality, Array]:
+    """Return the quality with what halves of the time contradict, and the most they do, (n,) rad.
+
+    The most holds halves, too, that are not alike enough to judge the whole.
+    """
+    halves = (half.samples for half in view_halves(view, settings))
+    off, arcs = contradiction(halves, axes, search)
+    comparable = arcs >= COMPARABLE * quality.ranges
+    if n_axes > 1:  # main movements are made one after another: a half may lack one
+        half = parted(len(view.samples.positions))
+        shares = early_share(samples, quality.labels, len(axes), *half)
+        comparable &= np.abs(shares - 0.5) <= 0.5 - LEAST_SHARE
+    halves_apart = np.fmax(quality.halves, np.where(comparable, off, np.nan))
+    said = np.where(arcs >= np.deg2rad(settings.axes.smallest_range), off, 0.0)
+    return replace(quality, halves=halves_apart), np.fmax(halves_apart, said)
 
 
 def _remark(halves: Array, options: AxesSettings) -> str:

@@ -23,7 +23,8 @@ from kinesphere.geometry.chain import joint_rotations
 from kinesphere.geometry.vectors import lengths
 from kinesphere.parameterization.anatomy import human_plan, without_side
 from kinesphere.parameterization.angles import JointAngles, unwrapped
-from kinesphere.parameterization.joint import JointFit, solve_joint
+from kinesphere.parameterization.joint import solve_joint
+from kinesphere.parameterization.joint_fit import JointFit
 from kinesphere.parameterization.measures import (
     lever,
     mid_point_residuals,
@@ -37,12 +38,11 @@ from kinesphere.parameterization.report import (
     stage_warnings,
     told,
 )
-from kinesphere.parameterization.reused import misfit, reused_fit
+from kinesphere.parameterization.reused import misfit, own_or_reused
 from kinesphere.parameterization.settings import (
     AxesSettings,
     ParameterizationSettings,
 )
-from kinesphere.parameterization.third_axis import fit_axes
 from kinesphere.parameterization.view import frames_within, reliable_frames, view_joint
 
 TORN = 0.02  # m, joints closer together than this are never called dislocated
@@ -114,7 +114,7 @@ def parameterize(
             settings,
             human,
         )
-        fit = reused_fit(joint.name, reuse) or fit_axes(view, settings)
+        fit = own_or_reused(view, reuse, settings)
         solved = solve_joint(view, fit.axes, fit.rest, settings)
         if fit.source == "reused":
             fit = replace(fit, misfit=misfit(view, solved, settings))
@@ -133,12 +133,14 @@ def parameterize(
                 axes=fit.axes,
                 rest=fit.rest,
                 axes_source=fit.source,
+                axes_assumed=fit.assumed,
                 axes_uncertainty=fit.uncertainty,
             )
         )
         seen[joint.name], fits[joint.name] = told(view), fit
         findings[joint.name] = {
             **fit.findings,
+            "axes_sources": list(fit.sources),
             "moving_s": float(view.movement.moving.sum() / motion.rate),
             "threshold_deg_s": float(np.rad2deg(view.movement.threshold)),
             "threshold_from_valley": view.movement.valley,
