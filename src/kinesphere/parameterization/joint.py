@@ -79,7 +79,7 @@ def fit_joint(
     if free is not None:
         axes, rest, _ = movement_rest(view, free.axis[None], _height(view, free.axis), settings)
         uncertainty = np.array([free.uncertainty])
-        largest = np.deg2rad(options.largest_uncertainty)
+        largest = np.deg2rad(options.largest_of(1))
         told = quality is not None and quality.uncertainty.max() > largest
         if free.uncertainty > largest and not told:
             doubts.append(uncertain_in_free_motion(free.uncertainty, free.reading))

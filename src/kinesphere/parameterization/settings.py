@@ -64,6 +64,7 @@ class FilterSettings:
             )
 
 
+HINGE = 1.5  # times as uncertain may the axis of a hinge be: the body's is 16° off at knees
 AXES_METHODS = (
     "phase-log-pca",
     "direction-joining",
@@ -124,12 +125,13 @@ class AxesSettings:
     largest_uncertainty: float = setting(
         10.0,
         "standard deviation of an axis, half of that angle, from which on the body's axis serves; "
-        "of a hinge in free motion, elbow or knee, three times that, where its axis foretells the "
-        "movement clearly better than the body's",
+        "of a hinge, whose axis the body's tells less well, 1.5 times that, and three times, where "
+        "its axis in free motion foretells the movement clearly better than the body's",
         unit="deg",
         low=0.0,
         high=45.0,
-        source="the body frame's axes are themselves 5-12 deg off at knees",
+        source="the body's axes are 3-6 deg from those of hips and lumbar, 4-26 from those of knees "
+        "(16 rms), 8-37 from those of elbows",
     )
     smallest_range: float = setting(
         12.0,
@@ -182,6 +184,10 @@ class AxesSettings:
         source="the paper names none; 5-10 deg make no difference on smoothed data",
     )
     restarts: int = setting(30, "random starts of 'em-restarts'", low=1, high=1000)
+
+    def largest_of(self, n_axes: int) -> float:
+        """Return the standard deviation in deg from which on an axis of so many is doubted."""
+        return self.largest_uncertainty * (HINGE if n_axes == 1 else 1.0)
 
     def __post_init__(self) -> None:
         check_settings(self)
