@@ -27,28 +27,32 @@ def reasons_to_doubt(
         The limits.
     """
     doubts: list[str] = []
-    most = s.largest_of(len(axes))
     if (small := np.rad2deg(quality.ranges.min())) < s.smallest_range:
         doubts.append(
             f"the range of motion about an axis is {small:.0f}°, {s.smallest_range:.0f}° are needed"
         )
     if not np.isfinite(quality.halves).all():
         doubts.append("there is too little movement to compare two halves of it")
-    elif np.rad2deg(quality.halves.max()) > 2 * most:
+    elif np.rad2deg(quality.halves.max()) > 2 * s.largest_uncertainty:
         doubts.append(apart(quality.halves))
-    elif np.rad2deg(quality.uncertainty.max()) > most:
+    elif np.rad2deg(quality.uncertainty.max()) > s.largest_uncertainty:
         doubts.append(uncertain(quality))
     if len(axes) > 1 and quality.explained < s.smallest_explained:
         doubts.append(
             f"rotation about one axis at a time explains only {quality.explained:.0%} "
             "of the movement"
         )
+    purity = float((quality.conditioning**2 / (1 + quality.conditioning**2)).min())
+    if len(axes) > 1 and s.smallest_explained > 0 and not doubts and purity < s.purest:
+        doubts.append(
+            f"only {purity:.0%} of the movement about an axis is about it: the limb circles"
+        )
     if len(axes) == 1:
         heights = np.arccos(np.clip(positions @ axes[0], -1, 1))
         spread = float(np.rad2deg(np.sqrt(((heights - np.median(heights)) ** 2).mean())))
         if spread > s.largest_spread:
             doubts.append(f"the limb leaves the cone about its only axis by {spread:.0f}° rms")
-        elif (arc := np.rad2deg(quality.ranges.min())) * np.deg2rad(most) < spread:
+        elif (arc := np.rad2deg(quality.ranges.min())) * np.deg2rad(s.largest_uncertainty) < spread:
             # as far as it leaves the cone over the arc it moves, its axis may be turned
             doubts.append(
                 f"the limb leaves the cone about its only axis by {spread:.1f}° rms, too much for "

@@ -16,7 +16,7 @@ from kinesphere.parameterization.view import JointView
 
 FOLDS = 4  # parts of the movement, each left out once
 SHORTEST = 1.0  # s of movement in a fold; less says nothing
-LOOSE = 2.0  # times the largest uncertainty: an axis of free motion less certain is none,
+LOOSE = 3.0  # times the largest uncertainty: an axis of free motion less certain is none,
 # however well it foretells; 4-22° where it does on real elbows and knees, 45° where by accident
 CLEARLY = 0.8  # times what the body's axis leaves: from there on a measured axis is better
 
@@ -55,7 +55,7 @@ def hinge_worth_having(view: JointView, options: AxesSettings) -> FreeHinge | No
         return None
     far = np.arccos(min(1.0, abs(float(found.axis @ body_axis)))) > np.deg2rad(options.farthest)
     small = found.moved < np.deg2rad(options.smallest_range)
-    loose = found.uncertainty > np.deg2rad(LOOSE * options.largest_of(1))
+    loose = found.uncertainty > np.deg2rad(LOOSE * options.largest_uncertainty)
     anatomical = view.human and joint_kind(view.name) is not None
     return None if small or loose or (far and anatomical) else found
 

@@ -23,7 +23,8 @@ from kinesphere.parameterization.joint_fit import (
     or_null,
     quality_findings,
 )
-from kinesphere.parameterization.movement_axes import MovementAxes, movement_axes
+from kinesphere.parameterization.judged_axes import MovementAxes
+from kinesphere.parameterization.movement_axes import movement_axes
 from kinesphere.parameterization.one_of_two import completed
 from kinesphere.parameterization.per_joint import parse_counts
 from kinesphere.parameterization.second_axis import cone_spread, second_axis
@@ -79,7 +80,7 @@ def fit_joint(
     if free is not None:
         axes, rest, _ = movement_rest(view, free.axis[None], _height(view, free.axis), settings)
         uncertainty = np.array([free.uncertainty])
-        largest = np.deg2rad(options.largest_of(1))
+        largest = np.deg2rad(options.largest_uncertainty)
         told = quality is not None and quality.uncertainty.max() > largest
         if free.uncertainty > largest and not told:
             doubts.append(uncertain_in_free_motion(free.uncertainty, free.reading))

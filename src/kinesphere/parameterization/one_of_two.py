@@ -3,7 +3,7 @@
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.parameterization.anatomy import body_axes
+from kinesphere.parameterization.anatomy import body_axes, without_side
 from kinesphere.parameterization.confidence import AxesQuality
 from kinesphere.parameterization.second_axis import second_axis
 from kinesphere.parameterization.settings import AxesSettings
@@ -12,15 +12,13 @@ from kinesphere.parameterization.view import JointView
 REPEATED = 2  # phases of each main movement: one alone contradicts nothing, where there are more
 FARTHEST = 30.0  # deg from the body's axis: two measured axes confirm each other, one alone has
 # nothing but the body's beside it; functional hips, lumbar and necks are 3-16° off
+FARTHEST_AT = {
+    "ankle": 45.0
+}  # the body has none for the joint below the ankle, whose axis rises by
+# 42° (Isman & Inman 1969)
 
 
-def axis_told(
-    quality: AxesQuality,
-    axes: Array,
-    view: JointView,
-    s: AxesSettings,
-    apart_by: Array | None = None,
-) -> int | None:
+def axis_told(quality: AxesQuality, axes: Array, view: JointView, s: AxesSettings) -> int | None:
     """Return which of two axes its movement tells although the other is doubtful; None if not one.
 
     Beside what is asked of every axis (range, halves, uncertainty), its phases must be pure by
@@ -36,8 +34,6 @@ def axis_told(
         The joint: whether anatomy says where it can have axes.
     s
         The limits.
-    apart_by : (n_found,), optional
-        How far halves of the time contradict each axis at most, alike or not, rad.
     """
     least_ratio = np.sqrt(s.purest / (1 - s.purest)) if s.purest < 1 else np.inf
     with np.errstate(invalid="ignore"):
@@ -47,12 +43,11 @@ def axis_told(
             & (np.rad2deg(quality.uncertainty) <= s.largest_uncertainty)
             & (quality.conditioning >= least_ratio)
         )
-    if apart_by is not None:
-        told &= np.rad2deg(apart_by) <= 2 * s.largest_uncertainty
     told &= np.bincount(quality.labels[quality.labels >= 0], minlength=len(axes)) >= REPEATED
     body = body_axes(view.name)
     if view.human and body is not None:
-        told &= np.abs(axes @ body[:2].T).max(axis=1) >= np.cos(np.deg2rad(FARTHEST))
+        farthest = FARTHEST_AT.get(without_side(view.name), FARTHEST)
+        told &= np.abs(axes @ body[:2].T).max(axis=1) >= np.cos(np.deg2rad(farthest))
     return int(told.argmax()) if told.sum() == 1 else None
 
 
