@@ -25,9 +25,9 @@ LITTLE = (0.0, 5.0, 8.0, 12.0, 40.0)  # deg to both sides about the other
 
 
 def make_joint(rng: np.random.Generator, noise: str, little: float, wide: int) -> TrueJoint:
-    """Return a hip that swings about the axis ``wide`` of the body and ``little`` deg about the other.
+    """Return a hip that swings far about one axis and ``little`` deg about the other.
 
-    Flexion is 0, abduction 1.
+    ``wide`` is 0 for flexion, 1 for abduction.
     """
     body = body_axes(JOINT)
     assert body is not None
@@ -83,7 +83,7 @@ TASKS = [
 
 
 def summary(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return noise → little → what serves, and the errors of the axis moved far and of the other."""
+    """Return noise → little → what serves, and errors of the axis moved far and of the other."""
     table: dict[str, Any] = {}
     for noise in dict.fromkeys(task[0] for task in TASKS):
         for little in LITTLE:
@@ -117,18 +117,18 @@ def _rms(values: Any) -> float | None:
 _BEFORE = """\
 ### 2d Two axes, about one of which the limb hardly moves
 
-Hips whose axes lie {off:.0f}° (rms about each axis) from the body frame's. They swing four times by
-±{wide:.0f}° about one axis, flexion or abduction, and four times by a *little* about the other; {seeds}
-of each kind in a row. Percent of them in which only the wide one is told and the other put across it,
-in which both are, and in which the wrong one is; rms errors in degrees, of the wide axis where it is
-told, what is said of it, and the body frame's in its place; then of the other where it was put across,
-and the body frame's.
+Hips whose axes are turned by {off:.0f}° (rms about each axis of the body) from the body's. They
+swing four times by ±{wide:.0f}° about one axis, flexion or abduction, and four times by a *little*
+about the other; {seeds} for each row. Percent of them in which only the wide one is told and the
+other put across it, in which both are, and in which the wrong one is; rms errors in degrees, of the
+wide axis where it is told, what is said of it, and the body frame's in its place; then of the other
+where it was put across, and the body frame's.
 
 | noise | little, ° | one | both | wrong | wide axis | said | *body's* | other | *body's* |
 |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|"""
 _AFTER = """
-An axis that is put across another is about as far off as the body frame's: what a person's axes are
-turned by shows in both axes, but for the turn about the one that is told.
+An axis that is put across another is a little nearer than the body frame's: of the turn between a
+person's axes and the body's it still lacks what is about the axis that is told.
 """
 
 

@@ -75,9 +75,9 @@ def apart(halves: Array) -> str:
     return f"axes from two halves of the data differ by {np.rad2deg(halves.max()):.0f}°"
 
 
-def uncertain(quality: AxesQuality) -> str:
-    """Return how uncertain the least certain axis is, and what makes it so, as a clause."""
-    worst = int(quality.uncertainty.argmax())
+def uncertain(quality: AxesQuality, which: int | None = None) -> str:
+    """Return how uncertain an axis, or the least certain, is, and what makes it so, as a clause."""
+    worst = int(quality.uncertainty.argmax()) if which is None else which
     degrees = np.rad2deg([quality.uncertainty[worst], quality.ranges[worst], quality.halves[worst]])
     told = (
         "an axis is uncertain by {:.1f}°: its movement covers {:.0f}°, and two halves of it differ "

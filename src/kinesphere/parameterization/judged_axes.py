@@ -13,7 +13,7 @@ from kinesphere.parameterization.axes.hinge import other_reading
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.confidence import AxesQuality, assess_axes
-from kinesphere.parameterization.doubts import apart, reasons_to_doubt
+from kinesphere.parameterization.doubts import apart, reasons_to_doubt, uncertain
 from kinesphere.parameterization.free_hinge import worse_than_body
 from kinesphere.parameterization.halves import (
     LEAST_SHARE,
@@ -101,7 +101,7 @@ def judged(
     if not doubts:
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
     told = axis_told(quality, axes, view, options) if doubts and pair else None
-    remark = _remark(apart_by if told is None else apart_by[[told]], options)
+    remark = _remark(quality, apart_by, told, settings.axes)
     return MovementAxes(axes, quality, tuple(doubts), remark, told)
 
 
@@ -136,9 +136,14 @@ def with_room(options: AxesSettings, name: str) -> AxesSettings:
     return replace(options, largest_uncertainty=most)
 
 
-def _remark(halves: Array, options: AxesSettings) -> str:
-    """Return how far halves contradict each other, a clause; empty where they hardly do."""
-    return apart(halves) if np.rad2deg(halves.max()) > options.largest_disagreement else ""
+def _remark(quality: AxesQuality, apart_by: Array, told: int | None, options: AxesSettings) -> str:
+    """Return how far halves contradict each other or how uncertain axes are; empty if hardly."""
+    of = slice(None) if told is None else slice(told, told + 1)
+    if np.rad2deg(apart_by[of].max()) > options.largest_disagreement:
+        return apart(apart_by[of])
+    if np.rad2deg(quality.uncertainty[of].max()) > options.largest_uncertainty:
+        return uncertain(quality, told)
+    return ""
 
 
 def in_free_motion(n_axes: int, options: AxesSettings) -> bool:

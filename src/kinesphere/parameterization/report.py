@@ -92,8 +92,9 @@ def stage_warnings(
         loose = [f"{name} ({fit.loose})" for name, fit in fits.items() if fit.loose]
         if loose:
             warnings.append(
-                "halves of their movement put these axes more than 10° apart, yet the body frame's "
-                f"would be no better: {', '.join(loose)}"
+                "halves of their movement put these axes more than 10° apart, or they are "
+                "uncertain by more, yet the body frame's would be no better: "
+                f"{', '.join(loose)}"
             )
     added = [f"{name} ({fit.added})" for name, fit in fits.items() if fit.added]
     if added:
