@@ -140,7 +140,7 @@ def test_axes_that_a_movement_told_are_counted(rng):
     half = replace(hip, axes_assumed=(True, False))
     assert (n_told(half), half.axes_sources) == (1, ("body", "given"))
     assert n_told(replace(hip, axes_source="body")) == 0
-    added = replace(elbow, axes=hip.axes, axes_assumed=(True, False))
+    added = replace(elbow, axes=hip.axes, axes_uncertainty=None, axes_assumed=(True, False))
     assert n_told(added) == 1
     for wrong in ((True,), (True, True)):
         with pytest.raises(BadModel, match="left_hip has 2 axes"):
