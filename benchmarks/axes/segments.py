@@ -162,8 +162,8 @@ in none, but for the first second of *rhip*, where a fidget of 33 deg/s is taken
   no axes can be had from it, and those of the body serve. *rhip* rests once, at 27 s; what comes
   before is about neither axis by half (grey), what comes after tells one.
 - *lankle*, *rankle*: the foot circles at 40 to 70 deg/s, about both axes at once and about neither
-  by itself: one long movement, about no axis by 90 %. Then it turns its sole in and out, seven times,
-  about one: movements of 11 to 12° whose peaks at 30 deg/s rise little above the threshold, and
+  by itself: one long movement, about no axis by 90 %. Then it turns its sole in and out seven times
+  about one, in movements of 11 to 12° whose peaks at 30 deg/s rise little above the threshold, and
   which lose their slow ends. The left one's tell an axis, those of the right one go less far. The
   last burst of *rankle* is the foot being put down.
 - *trunk*: five movements with the rests between them. From 62 s on the trunk turns about its own
