@@ -17,6 +17,7 @@ from benchmarks.axes import (
     floor,
     free_motion,
     normalization,
+    one_wide,
     outlying,
     segments,
     solved,
@@ -114,6 +115,9 @@ SECTIONS: Mapping[str, Callable[[Run, Path], dict[str, Any]]] = {
     },
     "hinges": lambda run, _: {
         "hinges": outlying.summary(run("hinges", outlying.run, outlying.TASKS))
+    },
+    "one": lambda run, _: {
+        "one": one_wide.summary(run("one wide axis", one_wide.run, one_wide.TASKS))
     },
     "free": lambda run, _: {
         "free": free_motion.summary(run("free motion", free_motion.run, free_motion.TASKS))

@@ -89,7 +89,7 @@ def row(trial: Trial) -> dict[str, Any]:
         "movements": len(phases),
         "about": [int((trial.labels == k).sum()) for k in range(min(SWINGS, joint.n_axes))],
         "moving_s": float(sum(end - start for start, end in phases)),
-        "axes_from": str(joint.axes_source),
+        "axes_from": ", ".join(sorted(set(joint.axes_sources), reverse=True)),
     }
 
 
@@ -161,9 +161,11 @@ in none, but for the first second of *rhip*, where a fidget of 33 deg/s is taken
 - *lhip*: the leg never rests between its movements; all 37 s are one movement about several axes,
   no axes can be had from it, and those of the body serve. *rhip* rests once, at 27 s; what comes
   before is about neither axis by half (grey), what comes after tells one.
-- *lankle*, *rankle*: circling or bending at 40 to 70 deg/s is one long movement. The second part is
-  slow, its peaks at 30 deg/s rise little above the threshold, and it falls into pieces that miss
-  their slowest moments. The last burst of *rankle* is the foot being put down.
+- *lankle*, *rankle*: the foot circles at 40 to 70 deg/s, about both axes at once and about neither
+  by itself: one long movement, about no axis by 90 %. Then it turns its sole in and out seven times
+  about one, in movements of 11 to 12° whose peaks at 30 deg/s rise little above the threshold, and
+  which lose their slow ends. The left one's tell an axis, those of the right one go less far. The
+  last burst of *rankle* is the foot being put down.
 - *trunk*: five movements with the rests between them. From 62 s on the trunk turns about its own
   length, ±50° in the report: its direction hardly moves then, 1 to 12 deg/s, and direction is all
   that the filter looks at, as in the paper. The speed of the whole orientation tells a third axis.

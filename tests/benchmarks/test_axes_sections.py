@@ -101,6 +101,9 @@ def row(joint, **more):
         "source": "movement",
         "n_axes_by_data": 1,
         "doubts": [],
+        "remark": None,
+        "half_told": False,
+        "sources": ["movement"],
         "axes": [[0.0, 0.0, -1.0]],
         "halves_deg": [1.0],
         "enough": True,
@@ -117,12 +120,14 @@ def test_contradictions_are_those_that_nobody_told():
             row("neck", halves_deg=[3.0, 40.0], doubts=["halves differ"]),
             row("lumbar", halves_deg=[50.0], source="body"),
             row("left_hip", halves_deg=None),
+            row("left_ankle", halves_deg=[30.0], half_told=True, remark="halves differ"),
+            row("right_ankle", halves_deg=[20.0], half_told=True, doubts=["of the other axis"]),
             row("right_hip", halves_deg=[70.0], enough=False),
         ],
     }
     found = contradictions(sources)
-    assert found["contradicted"] == ["a neck (40°)"]
-    assert len(found["given"]) == 5
+    assert found["contradicted"] == ["a neck (40°)", "b right_ankle (20°)"]
+    assert len(found["given"]) == 7
     assert found["untested"] == ["b left_hip", "b right_hip"]
 
 

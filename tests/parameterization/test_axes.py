@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 
 from kinesphere.parameterization.axes import AXES, find_axes
 from kinesphere.parameterization.axes.stratify import one_per_cell, windowed
+from kinesphere.parameterization.axes_settings import AXES_METHODS, AxesSettings
 from kinesphere.parameterization.samples import JointSamples
-from kinesphere.parameterization.settings import AXES_METHODS, AxesSettings
 
 ANY_CONE = ["phase-log-pca", "sara", "small-circle"]
 RIGHT_ANGLE = ["direction-joining", "em-restarts"]  # right only where limb and axis are at 90°

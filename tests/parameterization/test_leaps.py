@@ -3,7 +3,7 @@
 import numpy as np
 
 from kinesphere.parameterization.angles import JointAngles
-from kinesphere.parameterization.stage import leaps
+from kinesphere.parameterization.joint_flags import leaps
 
 
 def solved(angles, twists):

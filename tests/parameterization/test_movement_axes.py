@@ -55,7 +55,7 @@ def test_skin_makes_short_movements_less_certain(rng):
     short = told(rng, 10.0, 0.0).quality
     assert quality is not None
     assert short is not None
-    assert 2.5 * quality.uncertainty < short.uncertainty
+    assert 2.0 * quality.uncertainty < short.uncertainty
 
 
 def test_movements_done_twice_go_before_one_done_once():

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from tests.parameterization.conftest import wander
 
-from kinesphere.parameterization.anatomy import substitute_axes
+from kinesphere.parameterization.anatomy import room, substitute_axes
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.third_axis import fit_axes
 from kinesphere.parameterization.view import view_joint
@@ -54,17 +54,17 @@ def told_and_true(rng, swing_deg, kind, share):
 
 
 @pytest.mark.parametrize("kind", ["back", "held"])
-@pytest.mark.parametrize("swing_deg", [20.0, 30.0, 40.0])
+@pytest.mark.parametrize("swing_deg", [14.0, 20.0, 30.0, 40.0])
 @pytest.mark.parametrize("share", [0.0, 0.1])
 def test_the_error_that_is_told_is_not_smaller_than_the_one_made(rng, swing_deg, kind, share):
     both = [told_and_true(rng, swing_deg, kind, share) for _ in range(TRIALS)]
     told, true = np.array([b for b in both if b is not None] or np.empty((0, 2))).T
-    assert swing_deg == 20.0 or len(told) > TRIALS / 2  # honest, not refused altogether
+    assert swing_deg < 20.0 or len(told) > TRIALS / 2  # honest, not refused altogether
     assert np.sqrt(((true / told) ** 2).sum() / max(1, len(told))) < 1.15
     assert (true < 2 * told).all()
-    assert (told <= ParameterizationSettings().axes.largest_uncertainty).all()
+    assert (told <= room("left_elbow") * ParameterizationSettings().axes.largest_uncertainty).all()
 
 
 @pytest.mark.parametrize("kind", ["back", "held"])
 def test_a_swing_too_short_to_tell_an_axis_is_doubted(rng, kind):
-    assert [told_and_true(rng, 14.0, kind, 0.1) for _ in range(TRIALS)] == [None] * TRIALS
+    assert [told_and_true(rng, 9.0, kind, 0.1) for _ in range(TRIALS)] == [None] * TRIALS

@@ -78,6 +78,7 @@ def describe_skeleton(skeleton: Skeleton) -> dict[str, Any]:
                 "observability": joint.observability,
                 "n_axes": joint.n_axes,
                 "axes_from": joint.axes_source,
+                "axes_sources": list(joint.axes_sources),
             }
             for joint in skeleton.joints
         ],

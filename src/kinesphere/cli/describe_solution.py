@@ -34,6 +34,7 @@ def describe_solution(solution: Solution) -> dict[str, Any]:
                 "observability": joint.observability,
                 "n_axes": joint.n_axes,
                 "axes_from": joint.axes_source,
+                "axes_sources": list(joint.axes_sources),
                 "note": joint.note,
             }
             for joint in solution.skeleton.joints

@@ -1,6 +1,6 @@
 """The skeleton measured from the motion: limbs, joints, tree."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, TypeAlias
 
@@ -71,6 +71,9 @@ class Joint:
     rest: Array | None = None
     """(3, 3) ``parent_from_child`` where all angles are zero; None before parameterization."""
     axes_source: AxesSource | None = None
+    axes_assumed: tuple[bool, ...] = ()
+    """For each axis whether it was put across those from ``axes_source``, near the body frame's,
+    because nothing told it; empty where none was."""
     axes_uncertainty: Array | None = None
     """(n_axes,) rad, standard deviation of each axis' direction; NaN where unknown."""
     note: str = ""
@@ -85,6 +88,13 @@ class Joint:
             put(self, "axes", frozen(self.axes, None, 3, name=f"{self.name} axes"))
             if not 1 <= len(self.axes) <= 3:
                 raise BadModel(f"joint {self.name} has {len(self.axes)} axes; 1 to 3 are possible")
+        if self.axes_assumed:
+            put(self, "axes_assumed", tuple(map(bool, self.axes_assumed)))
+            if len(self.axes_assumed) != self.n_axes or all(self.axes_assumed):
+                raise BadModel(
+                    f"joint {self.name} has {self.n_axes} axes; which of them are assumed must be "
+                    f"told of each, and not be all of them, but is {self.axes_assumed}"
+                )
         if self.rest is not None:
             put(self, "rest", frozen(self.rest, 3, 3, name=f"{self.name} rest"))
         if self.axes_uncertainty is not None:
@@ -98,6 +108,32 @@ class Joint:
     def n_axes(self) -> int:
         """Number of movement axes; 0 before parameterization."""
         return 0 if self.axes is None else len(self.axes)
+
+    def with_axes_of(self, other: "Joint") -> "Joint":
+        """Return this joint with axes and rest of another, and where those are from."""
+        return replace(
+            self,
+            axes=other.axes,
+            rest=other.rest,
+            axes_source=other.axes_source,
+            axes_assumed=other.axes_assumed,
+            axes_uncertainty=other.axes_uncertainty,
+        )
+
+    @property
+    def without_axes(self) -> "Joint":
+        """Itself as it is before parameterization."""
+        return replace(
+            self, axes=None, rest=None, axes_source=None, axes_assumed=(), axes_uncertainty=None
+        )
+
+    @property
+    def axes_sources(self) -> tuple[AxesSource, ...]:
+        """Where each axis comes from, (n_axes,); empty where that is not told."""
+        if self.axes_source is None:
+            return ()
+        assumed = self.axes_assumed or (False,) * self.n_axes
+        return tuple("body" if one else self.axes_source for one in assumed)
 
 
 @dataclass(frozen=True, eq=False)

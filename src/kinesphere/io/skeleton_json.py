@@ -52,6 +52,7 @@ class _Joint(_Loose):
     observability: Observability
     range_of_motion_rad: float | None
     axes_source: AxesSource | None
+    axes_sources: tuple[AxesSource, ...] = ()
     note: str = ""
 
 
@@ -94,6 +95,7 @@ def skeleton_to_dict(skeleton: Skeleton) -> dict[str, Any]:
                 "observability": joint.observability,
                 "range_of_motion_rad": joint.range_of_motion,
                 "axes_source": joint.axes_source,
+                "axes_sources": joint.axes_sources,
                 "note": joint.note,
             }
             for joint in skeleton.joints
@@ -160,9 +162,16 @@ def _joint(found: _Joint) -> Joint:
         axes=axes,
         rest=None if found.rest is None else np.array(found.rest),
         axes_source=found.axes_source,
+        axes_assumed=_assumed(found),
         axes_uncertainty=spread,
         note=found.note,
     )
+
+
+def _assumed(found: _Joint) -> tuple[bool, ...]:
+    """Return which axes are the body frame's among others; files of old do not tell."""
+    assumed = tuple(source == "body" for source in found.axes_sources)
+    return assumed if found.axes_source != "body" and any(assumed) else ()
 
 
 def _nan(value: float | None) -> float:

@@ -1,5 +1,6 @@
 """Movement filter, movement axes, rest position, angles and twist: poses into parameters."""
 
+from kinesphere.parameterization.anatomy import n_told as n_told
 from kinesphere.parameterization.angles import unwrapped as unwrapped
 from kinesphere.parameterization.reused import told_of as told_of
 from kinesphere.parameterization.settings import AngleSettings as AngleSettings

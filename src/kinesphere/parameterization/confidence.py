@@ -14,11 +14,20 @@ from kinesphere.parameterization.samples import JointSamples
 TISSUE = np.deg2rad(3.0)
 """rad, by which skin turns a limb over a movement, short or long: two knees of one person were 1 to
 14° off in arcs of 58 to 12°, 3.2° rms over the arc beside what their halves say."""
+SHARE = 0.07
+"""rad for a rad of the movement, that skin comes back about another axis, which turns the axis as
+much however long the arc; two knees of one person twist by 0.077 and 0.068 with their angle, which
+is such a share, of skin or not. About the limb itself `AxesQuality.readings` tells it."""
 
 
 def with_tissue(uncertainty: Array, ranges: Array) -> Array:
     """Return standard deviations of axes with what skin adds over the arc, all in rad."""
     return np.asarray(np.hypot(uncertainty, TISSUE / np.maximum(ranges, TISSUE)))
+
+
+def with_skin(uncertainty: Array, ranges: Array) -> Array:
+    """Return standard deviations of axes that move a limb with all that skin adds, in rad."""
+    return np.hypot(with_tissue(uncertainty, ranges), SHARE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,10 +56,10 @@ class AxesQuality:
         """(n_axes,) rad, standard deviation of each axis.
 
         What halves suggest (they have twice the variance of the whole, their difference four
-        times), and what is alike in both: skin, by `TISSUE` over the arc, and twist that goes with
-        a hinge's angle.
+        times), and what is alike in both: skin, by `TISSUE` over the arc and by `SHARE`, and twist
+        that goes with a hinge's angle.
         """
-        return with_tissue(np.hypot(self.halves / 2, self.readings), self.ranges)
+        return with_skin(np.hypot(self.halves / 2, self.readings), self.ranges)
 
     def ordered(self, order: Sequence[int]) -> "AxesQuality":
         """Return the same for axes in another order."""
@@ -63,6 +72,27 @@ class AxesQuality:
             halves=self.halves[at],
             heights=self.heights[at],
             readings=self.readings[at],
+        )
+
+    def only(self, told: int, at: int) -> "AxesQuality":
+        """Return the same for two axes of which only the one at ``told`` is known, now ``at``.
+
+        The other's figures are NaN, and so is its uncertainty.
+        """
+
+        def placed(values: Array) -> Array:
+            both = np.full(2, np.nan)
+            both[at] = values[told]
+            return both
+
+        return AxesQuality(
+            labels=np.where(self.labels == told, at, -1),
+            ranges=placed(self.ranges),
+            conditioning=placed(self.conditioning),
+            explained=self.explained,
+            halves=placed(self.halves),
+            heights=placed(self.heights),
+            readings=placed(self.readings),
         )
 
 

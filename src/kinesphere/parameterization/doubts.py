@@ -42,6 +42,11 @@ def reasons_to_doubt(
             f"rotation about one axis at a time explains only {quality.explained:.0%} "
             "of the movement"
         )
+    purity = float((quality.conditioning**2 / (1 + quality.conditioning**2)).min())
+    if len(axes) > 1 and s.smallest_explained > 0 and not doubts and purity < s.purest:
+        doubts.append(
+            f"only {purity:.0%} of the movement about an axis is about it: the limb circles"
+        )
     if len(axes) == 1:
         heights = np.arccos(np.clip(positions @ axes[0], -1, 1))
         spread = float(np.rad2deg(np.sqrt(((heights - np.median(heights)) ** 2).mean())))
@@ -70,9 +75,9 @@ def apart(halves: Array) -> str:
     return f"axes from two halves of the data differ by {np.rad2deg(halves.max()):.0f}°"
 
 
-def uncertain(quality: AxesQuality) -> str:
-    """Return how uncertain the least certain axis is, and what makes it so, as a clause."""
-    worst = int(quality.uncertainty.argmax())
+def uncertain(quality: AxesQuality, which: int | None = None) -> str:
+    """Return how uncertain an axis, or the least certain, is, and what makes it so, as a clause."""
+    worst = int(quality.uncertainty.argmax()) if which is None else which
     degrees = np.rad2deg([quality.uncertainty[worst], quality.ranges[worst], quality.halves[worst]])
     told = (
         "an axis is uncertain by {:.1f}°: its movement covers {:.0f}°, and two halves of it differ "

@@ -1,8 +1,6 @@
 """One joint: its movement, its axes, its rest orientation, and whether they can be trusted."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,11 +14,18 @@ from kinesphere.parameterization.anatomy import (
 from kinesphere.parameterization.angles import JointAngles, solve_angles
 from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.fit import moving_positions
-from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.confidence import AxesQuality, observed_n_axes
 from kinesphere.parameterization.doubts import uncertain_in_free_motion
-from kinesphere.parameterization.free_hinge import FreeHinge, free_hinge
+from kinesphere.parameterization.free_hinge import FreeHinge, hinge_worth_having
+from kinesphere.parameterization.joint_fit import (
+    JointFit,
+    angles_between,
+    or_null,
+    quality_findings,
+)
+from kinesphere.parameterization.judged_axes import MovementAxes
 from kinesphere.parameterization.movement_axes import movement_axes
+from kinesphere.parameterization.one_of_two import completed
 from kinesphere.parameterization.per_joint import parse_counts
 from kinesphere.parameterization.second_axis import cone_spread, second_axis
 from kinesphere.parameterization.settings import (
@@ -31,32 +36,6 @@ from kinesphere.parameterization.view import JointView
 from kinesphere.parameterization.zero import body_rest, movement_rest, reach_and_twist
 
 OUT_OF_REACH = 0.05  # of the frames; about axes a person has, the limb goes wherever it goes
-LOOSE = 3.0  # times the largest uncertainty: an axis of free motion less certain is none,
-# however well it foretells; 4-22° where it does on real elbows and knees, 45° where by accident
-
-
-@dataclass(frozen=True, eq=False)
-class JointFit:
-    """What parameterizes one joint."""
-
-    axes: Array
-    """(n_axes, 3) unit vectors in the parent, distal first."""
-    rest: Array
-    """(3, 3) ``parent_from_child`` where all angles are zero."""
-    source: AxesSource
-    uncertainty: Array
-    """(n_axes,) rad; NaN where unknown."""
-    findings: Mapping[str, Json]
-    doubts: tuple[str, ...]
-    """What speaks against axes from the movement, each a clause."""
-    kept: str = ""
-    """Why axes from the movement serve in spite of doubts, a clause; empty where they do not."""
-    added: str = ""
-    """How far one axis falls short, where a second was added; empty where none was."""
-    loose: str = ""
-    """How far halves of the movement contradict each other where its axes still serve."""
-    misfit: str = ""
-    """How far axes from another recording miss the limb of this one, where they do."""
 
 
 def fit_joint(
@@ -93,9 +72,11 @@ def fit_joint(
 
     found = movement_axes(view, n_axes, settings)
     axes, quality, doubts = found.axes, found.quality, list(found.doubts)
-    free = _free_hinge(view, options) if doubts and n_axes == 1 else None
+    free = hinge_worth_having(view, options) if doubts and n_axes == 1 else None
     source: AxesSource = "movement"
+    assumed: tuple[bool, ...] = ()
     loose = ""
+    one = _one_and_across(view, found, settings) if doubts and not keep else None
     if free is not None:
         axes, rest, _ = movement_rest(view, free.axis[None], _height(view, free.axis), settings)
         uncertainty = np.array([free.uncertainty])
@@ -103,6 +84,10 @@ def fit_joint(
         told = quality is not None and quality.uncertainty.max() > largest
         if free.uncertainty > largest and not told:
             doubts.append(uncertain_in_free_motion(free.uncertainty, free.reading))
+    elif one is not None:
+        axes, rest, quality = one
+        uncertainty, loose = quality.uncertainty, found.remark
+        assumed = tuple(bool(np.isnan(u)) for u in uncertainty)
     elif quality is not None and len(axes) == n_axes and (not doubts or keep):
         axes, rest, order = movement_rest(view, axes, quality.heights, settings)
         quality = quality.ordered(order)
@@ -113,7 +98,8 @@ def fit_joint(
                 doubts.append(f"the limb is out of these axes' reach in {share:.0%} of the frames")
         if not doubts:
             loose = found.remark
-    if free is None and (len(axes) < n_axes or (doubts and not keep)):
+    served = free is not None or one is not None
+    if not served and (len(axes) < n_axes or (doubts and not keep)):
         source = "body"
         axes = substitute_axes(view.name, n_axes, view.gravity)[::-1]
         rest = body_rest(view, axes)
@@ -125,6 +111,7 @@ def fit_joint(
             across = second_axis(axes[0], rest @ view.long_axis, side[1])
             axes, uncertainty = np.array([across, axes[0]]), np.array([np.nan, uncertainty[0]])
             added = f"{spread:.0f}°"
+            assumed = (True, False) if source == "movement" else ()
     if joint_kind(view.name) is None:
         axes = larger_excursion_positive(view, axes, rest, settings)
     findings: dict[str, Json] = {
@@ -133,33 +120,54 @@ def fit_joint(
         "axes_method": options.method,
         "axes_source": source,
         "doubts": [*doubts, loose] if loose else list(doubts),
+        "remark": loose or None,
         "phases_s": [list(span) for span in view.samples.phase_times],
         "reliable_s": float(view.calibration.sum() / view.samples.rate),
-        "axes_uncertainty_deg": [
-            float(u) if np.isfinite(u) else None for u in np.rad2deg(uncertainty)
-        ],
+        "axes_uncertainty_deg": or_null(np.rad2deg(uncertainty)),
         "axes_apart_deg": angles_between(axes),
-        **_quality_findings(quality),
+        **quality_findings(quality),
     }
-    if source == "movement" and (reading := _reading(quality, free)) > 0:
+    if source == "movement" and one is None and (reading := _reading(quality, free)) > 0:
         findings["other_reading_deg"] = float(np.rad2deg(reading))
     kept = ""
     if free is not None:
         left, body_left = np.rad2deg(free.error), np.rad2deg(free.body_error)
         findings |= {"held_out_deg": left, "held_out_body_deg": body_left}
         kept = f"{left:.1f}° instead of {body_left:.1f}°"
-    return JointFit(axes, rest, source, uncertainty, findings, tuple(doubts), kept, added, loose)
+    return JointFit(
+        axes,
+        rest,
+        source,
+        uncertainty,
+        findings,
+        tuple(doubts),
+        kept=kept,
+        added=added,
+        assumed=assumed,
+        half_told=one is not None,
+        loose=loose,
+    )
+
+
+def _one_and_across(
+    view: JointView, found: MovementAxes, settings: ParameterizationSettings
+) -> tuple[Array, Array, AxesQuality] | None:
+    """Return the one axis that is told of two, the other across it, rest, and what is known.
+
+    None where not exactly one is told, or where the limb cannot be followed about the two.
+    """
+    if found.told is None or found.quality is None:
+        return None
+    axes, at = completed(found.axes[found.told], view.name, view.gravity)
+    rest = body_rest(view, axes)
+    share, _ = reach_and_twist(view, axes, rest, settings)
+    return None if share > OUT_OF_REACH else (axes, rest, found.quality.only(found.told, at))
 
 
 def asked_n_axes(name: str, options: AxesSettings) -> int | None:
     """Return how many axes the user said a joint has; None where nobody did."""
     counts = parse_counts(options.counts)
     return counts.get(name, counts.get(joint_kind(name) or name))
-
-
-def angles_between(axes: Array) -> list[Json]:
-    """Return the angles in deg between the lines of each axis and the next, (n_axes, 3)."""
-    return [float(np.rad2deg(np.arccos(np.clip(abs(a @ b), 0, 1)))) for a, b in pairwise(axes)]
 
 
 def solve_joint(
@@ -181,21 +189,6 @@ def solve_joint(
         settings.twist,
         view.samples.rate,
     )
-
-
-def _free_hinge(view: JointView, options: AxesSettings) -> FreeHinge | None:
-    """Return the axis of a hinge in free motion; None where it is not clearly worth having."""
-    if options.method not in BY_ORIENTATION or options.on_doubt != "body":
-        return None
-    body_axis = substitute_axes(view.name, 1, view.gravity)[0]
-    found = free_hinge(view.samples, body_axis)
-    if found is None or not found.clearly_better:
-        return None
-    far = np.arccos(min(1.0, abs(float(found.axis @ body_axis)))) > np.deg2rad(options.farthest)
-    small = found.moved < np.deg2rad(options.smallest_range)
-    loose = found.uncertainty > np.deg2rad(LOOSE * options.largest_uncertainty)
-    anatomical = view.human and joint_kind(view.name) is not None
-    return None if small or loose or (far and anatomical) else found
 
 
 def _reading(quality: AxesQuality | None, free: FreeHinge | None) -> float:
@@ -222,15 +215,3 @@ def larger_excursion_positive(
         if len(known) and np.percentile(known, PERCENTILES).sum() < 0:
             signs[k] = -1.0
     return axes * signs[:, None]
-
-
-def _quality_findings(quality: AxesQuality | None) -> dict[str, Json]:
-    if quality is None:
-        return {}
-    halves = np.rad2deg(quality.halves)
-    return {
-        "ranges_deg": [float(r) for r in np.rad2deg(quality.ranges)],
-        "conditioning": [float(c) for c in quality.conditioning],
-        "explained": quality.explained,
-        "halves_disagreement_deg": [float(h) if np.isfinite(h) else None for h in halves],
-    }

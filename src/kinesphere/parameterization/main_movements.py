@@ -11,21 +11,26 @@ from kinesphere.parameterization.samples import JointSamples, Phase
 from kinesphere.parameterization.settings import AxesSettings
 
 PERCENTILES = (5.0, 95.0)  # a range of motion leaves the extremes out
+SHORTER = 0.6  # times as far as all phases about an axis together: ends of a phase are slow, and a
+# phase of few frames loses more of them; feet turned seven times by 17° have phases of 11 to 12°
 STEP = 0.1  # s, over which the direction of a turn is taken
 SHORTEST = 0.8  # s, of a piece that a phase is cut into
 LONG = 2.0  # s, of one axis at a time: a repeated stroke, hardly ever an accident
 MOST_TRIALS = 300  # places where a cut is tried
 
 
-def main_movements(samples: JointSamples, s: AxesSettings) -> Iterator[tuple[Phase, ...]]:
+def main_movements(
+    samples: JointSamples, s: AxesSettings, share: float = 1.0
+) -> Iterator[tuple[Phase, ...]]:
     """Yield sets of phases to find axes in, the most trustworthy set first.
 
     A main movement is done about one axis at a time; a phase of free motion is not, but may hold
     more movement than all of calibration and would outweigh it. So first come the phases that are
     very pure, and the halves of phases that run from one main movement into the next without a
     rest, cut where the axes change; then the phases that are nearly pure; at last all there are.
+    Pure phases count from a ``share`` of `AxesSettings.smallest_range` on.
     """
-    far = np.deg2rad(s.smallest_range)
+    far = share * np.deg2rad(s.smallest_range)
     purities = {phase: _purity(samples, phase) for phase in samples.phases}
     purer = 1 - (1 - s.purest) / 4
     very_pure: list[Phase] = []

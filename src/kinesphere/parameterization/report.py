@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.data import Array, Codes, JointFlag, Json
-from kinesphere.parameterization.joint import JointFit
+from kinesphere.parameterization.joint_fit import JointFit
 from kinesphere.parameterization.measures import number
 from kinesphere.parameterization.view import JointView
 
@@ -65,10 +65,20 @@ def stage_warnings(
             doubted = [
                 f"{name} ({'; '.join(fit.doubts)})"
                 for name, fit in fits.items()
-                if fit.source == source and fit.doubts and not fit.kept
+                if fit.source == source and fit.doubts and not fit.kept and not fit.half_told
             ]
             if doubted:
                 warnings.append(f"{sentence}: {', '.join(doubted)}")
+        halved = [
+            f"{name} (axis {fit.assumed.index(True) + 1}: {'; '.join(fit.doubts)})"
+            for name, fit in fits.items()
+            if fit.source == "movement" and fit.half_told
+        ]
+        if halved:
+            warnings.append(
+                "the main movements tell only one of two axes; the other was put across it, "
+                f"nearest the body frame's: {', '.join(halved)}"
+            )
         kept = [
             f"{name} ({fit.kept}, though {'; '.join(fit.doubts)})"
             for name, fit in fits.items()
@@ -82,8 +92,9 @@ def stage_warnings(
         loose = [f"{name} ({fit.loose})" for name, fit in fits.items() if fit.loose]
         if loose:
             warnings.append(
-                "halves of their movement put these axes more than 10° apart, yet the body frame's "
-                f"would be no better: {', '.join(loose)}"
+                "halves of their movement put these axes more than 10° apart, or they are "
+                "uncertain by more, yet the body frame's would be no better: "
+                f"{', '.join(loose)}"
             )
     added = [f"{name} ({fit.added})" for name, fit in fits.items() if fit.added]
     if added:
@@ -119,6 +130,7 @@ def stage_warnings(
         name
         for name, fit in fits.items()
         if fit.source == "movement"
+        and not fit.assumed
         and len(fit.axes) == 2
         and fit.findings.get("n_axes_by_data") == 1
     ]

@@ -5,8 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from kinesphere.data import Array, Json, Skeleton
+from kinesphere.parameterization.anatomy import n_told, wanted_n_axes
 from kinesphere.parameterization.angles import JointAngles
-from kinesphere.parameterization.joint import OUT_OF_REACH, JointFit, solve_joint
+from kinesphere.parameterization.joint import OUT_OF_REACH, solve_joint
+from kinesphere.parameterization.joint_fit import JointFit
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.third_axis import fit_axes
 from kinesphere.parameterization.view import JointView
@@ -15,6 +17,7 @@ CARRIED = (
     "n_axes_by_data",
     "axes_method",
     "doubts",
+    "remark",
     "axes_uncertainty_deg",
     "axes_apart_deg",
     "ranges_deg",
@@ -34,7 +37,7 @@ FAR = np.deg2rad(2.0)  # rms, and farther than they by as much: less is how a li
 def reused_fit(name: str, reuse: Skeleton | None) -> JointFit | None:
     """Return a joint's axes from another solution; None if it measured none of that name.
 
-    Doubts of that solution's history stay doubts.
+    Doubts of that solution's history stay doubts, axes put across others stay assumed.
     """
     if reuse is None or name not in reuse.joint_names:
         return None
@@ -48,7 +51,30 @@ def reused_fit(name: str, reuse: Skeleton | None) -> JointFit | None:
     findings |= {"n_axes": joint.n_axes, "axes_source": "reused"}
     doubts = findings.get("doubts")
     said = tuple(str(doubt) for doubt in doubts) if isinstance(doubts, list | tuple) else ()
-    return JointFit(joint.axes, joint.rest, "reused", uncertainty, findings, said)
+    return JointFit(
+        joint.axes,
+        joint.rest,
+        "reused",
+        uncertainty,
+        findings,
+        said,
+        assumed=joint.axes_assumed,
+        half_told=any(joint.axes_assumed) and n_told(joint) < wanted_n_axes(name),
+    )
+
+
+def own_or_reused(
+    view: JointView, reuse: Skeleton | None, settings: ParameterizationSettings
+) -> JointFit:
+    """Return a joint's axes from another solution, or from its own movement if that tells more.
+
+    What was only assumed there may be measured here.
+    """
+    there = reused_fit(view.name, reuse)
+    if there is not None and not there.half_told:
+        return there
+    own = fit_axes(view, settings)
+    return own if there is None or own.n_told > there.n_told else there
 
 
 def told_of(name: str, skeleton: Skeleton) -> Mapping[str, Json]:

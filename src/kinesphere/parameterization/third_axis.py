@@ -16,12 +16,11 @@ from kinesphere.parameterization.axes.twist_phases import TwistAxis, find_twist_
 from kinesphere.parameterization.confidence import observed_n_axes
 from kinesphere.parameterization.joint import (
     OUT_OF_REACH,
-    JointFit,
-    angles_between,
     asked_n_axes,
     fit_joint,
     larger_excursion_positive,
 )
+from kinesphere.parameterization.joint_fit import JointFit, angles_between, or_null
 from kinesphere.parameterization.samples import Phase
 from kinesphere.parameterization.second_axis import second_axis
 from kinesphere.parameterization.settings import ParameterizationSettings
@@ -135,12 +134,14 @@ def _joined(
     about = fit.rest @ twist.axis
     if body is not None and about @ body[2] < 0:
         about = -about
-    swings, uncertainty = fit.axes, fit.uncertainty
+    swings, uncertainty, assumed = fit.axes, fit.uncertainty, fit.assumed
     between = 3 - 1 - len(swings)
     if between:
         side = np.cross(swings[0], about) if body is None else body[1]
         swings = np.array([second_axis(swings[0], about, side), swings[0]])
-        uncertainty = np.array([np.nan, uncertainty[0]])
+        uncertainty, assumed = np.array([np.nan, uncertainty[0]]), (False, True, False)
+    elif assumed:
+        assumed = (False, *assumed)
     axes = np.array([about, *swings])
     closest = max(abs(float(a @ b)) for a, b in combinations(axes, 2))
     if closest > np.cos(np.deg2rad(settings.axes.smallest_angle)):
@@ -157,7 +158,7 @@ def _joined(
         **fit.findings,
         "n_axes": 3,
         "n_axes_by_data": observed + 1 if isinstance(observed, int) else None,
-        "axes_uncertainty_deg": [float(u) if u == u else None for u in np.rad2deg(uncertainty)],
+        "axes_uncertainty_deg": or_null(np.rad2deg(uncertainty)),
         "axes_apart_deg": angles_between(axes),
         "phases_s": sorted([*swung, *spans], key=_start),
         "twist_phases_s": spans,
@@ -169,7 +170,7 @@ def _joined(
             for name, value in zip(PER_AXIS, own, strict=True)
         },
     }
-    return replace(fit, axes=axes, uncertainty=uncertainty, findings=findings)
+    return replace(fit, axes=axes, uncertainty=uncertainty, findings=findings, assumed=assumed)
 
 
 def _listed(value: Json) -> list[Json]:

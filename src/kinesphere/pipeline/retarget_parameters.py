@@ -54,15 +54,7 @@ def parameters_like(
         rebuilt = joint_rotations(was.axes, was.rest, limb.long_axis, angles[:, j], twists[:, j])
         middle = lever(joint.centre_in_child, limb.length, limb.long_axis)
         residuals[:, j] = mid_point_residuals(relative[:, j], rebuilt, middle)
-        joints.append(
-            replace(
-                joint,
-                axes=was.axes,
-                rest=was.rest,
-                axes_source=was.axes_source,
-                axes_uncertainty=was.axes_uncertainty,
-            )
-        )
+        joints.append(joint.with_axes_of(was))
     return Parameters(
         skeleton=replace(motion.skeleton, joints=tuple(joints)),
         root_positions=motion.origins[:, 0],

@@ -111,11 +111,7 @@ def retarget(
 
 def _without_axes(skeleton: Skeleton) -> Skeleton:
     """Return the skeleton as it is before parameterization: the axes are the source's."""
-    joints = tuple(
-        replace(joint, axes=None, rest=None, axes_source=None, axes_uncertainty=None)
-        for joint in skeleton.joints
-    )
-    return replace(skeleton, joints=joints)
+    return replace(skeleton, joints=tuple(joint.without_axes for joint in skeleton.joints))
 
 
 def _recording(motion: Motion, step: Step) -> Recording:

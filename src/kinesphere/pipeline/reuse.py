@@ -8,7 +8,7 @@ import numpy as np
 
 from kinesphere import __version__
 from kinesphere.data import Joint, Json, Motion, Parameters, Skeleton, Solution, Step
-from kinesphere.parameterization import ParameterizationSettings, parameterize, told_of
+from kinesphere.parameterization import ParameterizationSettings, n_told, parameterize, told_of
 from kinesphere.pipeline.doubts import calibration_doubts
 
 Source: TypeAlias = Solution | Skeleton
@@ -69,8 +69,8 @@ def with_best_axes(
     """Return a skeleton whose joints bear the axes that some other knows best.
 
     Laboratories record a functional trial for each joint: a hip's axes are measured in one, a
-    knee's in another. Of the solutions that measured a joint's axes (none of which is the body
-    frame's), the one with the smallest largest uncertainty serves; the first of equal ones. What
+    knee's in another. Of the solutions that measured a joint's axes, those that measured most of
+    them, the one with the smallest largest uncertainty serves; the first of equal ones. What
     twist that goes with the angle makes unsure does not count: it is the same in every recording,
     and a long movement only shows it.
 
@@ -96,19 +96,14 @@ def with_best_axes(
             for i, source in enumerate(sources)
             if joint.name in source.joint_names and _measured(source.joint(joint.name))
         }
-        nothing = replace(joint, axes=None, rest=None, axes_source=None, axes_uncertainty=None)
         if others:
-            best = min(others, key=lambda i: _uncertainty(others[i], sources[i]))
-            other = others[best]
-            chosen[joint.name] = best
-            nothing = replace(
-                nothing,
-                axes=other.axes,
-                rest=other.rest,
-                axes_source=other.axes_source,
-                axes_uncertainty=other.axes_uncertainty,
+            best = min(
+                others, key=lambda i: (-n_told(others[i]), _uncertainty(others[i], sources[i]))
             )
-        joints.append(nothing)
+            chosen[joint.name] = best
+            joints.append(joint.with_axes_of(others[best]))
+        else:
+            joints.append(joint.without_axes)
     told: dict[str, Json] = {
         name: dict(told_of(name, sources[place])) for name, place in chosen.items()
     }

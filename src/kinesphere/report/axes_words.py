@@ -13,8 +13,9 @@ def axes_in_detail(name: str, history: Iterable[Step]) -> str:
     """
     told = _told(name, history)
     lines = []
-    deviations, arcs, ratios = (
-        _listed(told.get(key)) for key in ("axes_uncertainty_deg", "ranges_deg", "conditioning")
+    deviations, arcs, ratios, sources = (
+        _listed(told.get(key))
+        for key in ("axes_uncertainty_deg", "ranges_deg", "conditioning", "axes_sources")
     )
     for k, deviation in enumerate(deviations):
         figures = [f"± {deviation:.1f}°"] if isinstance(deviation, float) else []
@@ -24,6 +25,8 @@ def axes_in_detail(name: str, history: Iterable[Step]) -> str:
             figures.append(f"rotation {ratios[k]:.3g} times larger than about others")
         if isinstance(deviation, float):
             lines.append(f"axis {k + 1} {', '.join(figures)}")
+        elif k < len(sources) and sources[k] == "body" and set(sources) != {"body"}:
+            lines.append(f"axis {k + 1} put across, nearest the body frame's")
     return "; ".join(lines)
 
 

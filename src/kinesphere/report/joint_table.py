@@ -72,7 +72,7 @@ def _joint_row(solution: Solution, j: int, joint: Joint) -> JointRow:
     flags = parameters.flags[:, j]
     known = {flag: (flags & flag).astype(bool).mean() for flag in JointFlag if (flags & flag).any()}
     uncertainty = joint.axes_uncertainty
-    axes = f"{joint.n_axes} from {joint.axes_source}" if joint.axes_source else "–"
+    axes = _origins(joint)
     if uncertainty is not None and np.isfinite(uncertainty).any():
         axes += f", ± {np.rad2deg(np.nanmax(uncertainty)):.1f}°"
     return JointRow(
@@ -100,11 +100,18 @@ def _joint_row(solution: Solution, j: int, joint: Joint) -> JointRow:
     )
 
 
+def _origins(joint: Joint) -> str:
+    """Return where a joint's axes come from, in words."""
+    if not joint.axes_assumed:
+        return f"{joint.n_axes} from {joint.axes_source}" if joint.axes_source else "–"
+    return ", ".join(f"axis {k} from {s}" for k, s in enumerate(joint.axes_sources, start=1))
+
+
 def _trust(joint: Joint, unreachable: float) -> str:
     """Judge a joint by what its centre and axes rest on; 15 mm is half a knee's width of skin."""
     if joint.observability in ("undetermined",) or joint.residual > 0.030:
         return "poor"
-    if joint.observability == "hinge" or joint.residual > 0.015 or joint.axes_source == "body":
+    if joint.observability == "hinge" or joint.residual > 0.015 or "body" in joint.axes_sources:
         return "fair"
     known = np.asarray(() if joint.axes_uncertainty is None else joint.axes_uncertainty)
     loose = bool((known > np.deg2rad(UNSURE)).any())  # NaN, nothing told, is not

@@ -1,0 +1,71 @@
+"""What parameterizes one joint, and the figures that are told of it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from kinesphere.data import Array, AxesSource, Json
+from kinesphere.parameterization.confidence import AxesQuality
+
+
+@dataclass(frozen=True, eq=False)
+class JointFit:
+    """What parameterizes one joint."""
+
+    axes: Array
+    """(n_axes, 3) unit vectors in the parent, distal first."""
+    rest: Array
+    """(3, 3) ``parent_from_child`` where all angles are zero."""
+    source: AxesSource
+    uncertainty: Array
+    """(n_axes,) rad; NaN where unknown."""
+    findings: Mapping[str, Json]
+    doubts: tuple[str, ...]
+    """What speaks against axes from the movement, each a clause."""
+    kept: str = ""
+    """Why axes from the movement serve in spite of doubts, a clause; empty where they do not."""
+    added: str = ""
+    """How far one axis falls short, where a second was added; empty where none was."""
+    assumed: tuple[bool, ...] = ()
+    """For each axis whether it was put across those that the movement tells; empty for none."""
+    half_told: bool = False
+    """Whether a movement tells one axis of the two that move the limb."""
+    loose: str = ""
+    """How far halves of the movement contradict each other where its axes still serve."""
+    misfit: str = ""
+    """How far axes from another recording miss the limb of this one, where they do."""
+
+    @property
+    def n_told(self) -> int:
+        """How many of its axes the movement tells, here or where they are reused from."""
+        return 0 if self.source == "body" else len(self.axes) - sum(self.assumed)
+
+    @property
+    def sources(self) -> tuple[AxesSource, ...]:
+        """Where each axis is from."""
+        assumed = self.assumed or (False,) * len(self.axes)
+        return tuple("body" if one else self.source for one in assumed)
+
+
+def angles_between(axes: Array) -> list[Json]:
+    """Return the angles in deg between the lines of each axis and the next, (n_axes, 3)."""
+    return [float(np.rad2deg(np.arccos(np.clip(abs(a @ b), 0, 1)))) for a, b in pairwise(axes)]
+
+
+def quality_findings(quality: AxesQuality | None) -> dict[str, Json]:
+    """Return the figures of what speaks for and against axes; null for one that nothing tells."""
+    if quality is None:
+        return {}
+    return {
+        "ranges_deg": or_null(np.rad2deg(quality.ranges)),
+        "conditioning": or_null(quality.conditioning),
+        "explained": quality.explained,
+        "halves_disagreement_deg": or_null(np.rad2deg(quality.halves)),
+    }
+
+
+def or_null(values: Array) -> list[Json]:
+    """Return figures, (n,), as JSON; null for those that are unknown."""
+    return [float(value) if np.isfinite(value) else None for value in values]

@@ -1,0 +1,68 @@
+"""What is flagged of a joint in each frame."""
+
+import numpy as np
+
+from kinesphere.data import Codes, JointFlag, Mask, Motion, PoseFlag
+from kinesphere.geometry.vectors import lengths
+from kinesphere.parameterization.angles import JointAngles
+from kinesphere.parameterization.joint_fit import JointFit
+from kinesphere.parameterization.settings import ParameterizationSettings
+
+TORN = 0.02  # m, joints closer together than this are never called dislocated
+OUTLYING = 6.0  # robust standard deviations
+LEAP = np.pi / 2  # rad between frames; the other branch is about half a turn of twist away
+
+
+def flags_of(
+    motion: Motion,
+    j: int,
+    solved: JointAngles,
+    fit: JointFit,
+    settings: ParameterizationSettings,
+) -> Codes:
+    """Return the JointFlags of joint ``j``, (n_frames,) uint8."""
+    limbs = [int(motion.skeleton.parents[j + 1]), j + 1]
+    unseen = np.isnan(solved.angles[:, len(fit.axes) - 1])
+    flags = np.where(unseen, JointFlag.UNSEEN, 0)
+    with np.errstate(invalid="ignore"):
+        far = solved.excess > np.deg2rad(settings.angles.unreachable)
+        edge = solved.sines < np.sin(np.deg2rad(settings.angles.singular))
+    flags |= np.where(far, JointFlag.UNREACHABLE, 0)
+    if len(fit.axes) > 1:
+        flags |= np.where(edge | leaps(solved), JointFlag.SINGULAR, 0)
+    pose = motion.flags[:, limbs]
+    flags |= np.where(~unseen & (pose[:, 1] == PoseFlag.TWIST_UNKNOWN), JointFlag.TWIST_UNKNOWN, 0)
+    flags |= np.where(~unseen & (pose == PoseFlag.FILLED).any(axis=1), JointFlag.FILLED, 0)
+    flags |= np.where(_torn(motion, j), JointFlag.DISLOCATED, 0)
+    return flags.astype(np.uint8)
+
+
+def leaps(solved: JointAngles) -> Mask:
+    """Return the frames on both sides of a leap of an angle, (n_frames,).
+
+    Only near a singular pose can angles leap while the limb does not: the solution passes to its
+    other branch, between two frames if the motion is fast.
+    """
+    angles = np.column_stack([solved.angles, solved.twists])
+    with np.errstate(invalid="ignore"):
+        turned = np.abs((np.diff(angles, axis=0) + np.pi) % (2 * np.pi) - np.pi)
+        leap = (turned > LEAP).any(axis=1)
+    beside: Mask = np.zeros(len(angles), dtype=bool)
+    beside[:-1] |= leap
+    beside[1:] |= leap
+    return beside
+
+
+def _torn(motion: Motion, j: int) -> Mask:
+    """Return where parent and child disagree about the joint far more than usual, (n_frames,)."""
+    joint, parent = motion.skeleton.joints[j], motion.skeleton.parents[j + 1]
+    by_parent = motion.rotations[:, parent] @ joint.centre_in_parent + motion.origins[:, parent]
+    by_child = motion.rotations[:, j + 1] @ joint.centre_in_child + motion.origins[:, j + 1]
+    apart = lengths(by_parent - by_child)
+    known: Mask = np.isfinite(apart)
+    if not known.any():
+        return known
+    usual = float(np.median(apart[known]))
+    spread = 1.4826 * float(np.median(np.abs(apart[known] - usual)))
+    with np.errstate(invalid="ignore"):
+        return np.asarray(apart > usual + max(OUTLYING * spread, TORN))

@@ -1,0 +1,166 @@
+"""Whether axes that some phases show are those of main movements: all that tells."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.geometry.even_frames import parted
+from kinesphere.parameterization.anatomy import nominal_axes, room
+from kinesphere.parameterization.angles import two_axis_angles
+from kinesphere.parameterization.arcs import PERCENTILES
+from kinesphere.parameterization.axes.hinge import other_reading
+from kinesphere.parameterization.axes.registry import BY_ORIENTATION
+from kinesphere.parameterization.axes.universal_joint import reference_rotation
+from kinesphere.parameterization.confidence import AxesQuality, assess_axes
+from kinesphere.parameterization.doubts import apart, reasons_to_doubt, uncertain
+from kinesphere.parameterization.free_hinge import worse_than_body
+from kinesphere.parameterization.halves import (
+    LEAST_SHARE,
+    Finder,
+    Searcher,
+    contradiction,
+    early_share,
+)
+from kinesphere.parameterization.one_of_two import axis_told
+from kinesphere.parameterization.samples import JointSamples
+from kinesphere.parameterization.settings import (
+    AngleSettings,
+    AxesSettings,
+    ParameterizationSettings,
+)
+from kinesphere.parameterization.view import JointView, view_halves
+
+COMPARABLE = 0.5  # of the whole arc: a half that moves less far is no judge of the whole
+
+OFTEN = 4  # phases that are shorter than those of main movements must be as many
+MOST_UNCERTAIN = 45.0  # deg; the setting's own limit
+
+
+@dataclass(frozen=True, eq=False)
+class MovementAxes:
+    """What a joint's movement tells about its axes."""
+
+    axes: Array
+    """(n_found, 3)"""
+    quality: AxesQuality | None
+    """None where nothing was found."""
+    doubts: tuple[str, ...]
+    """Why these axes should not serve, each a clause."""
+    remark: str = ""
+    """What a person should know of axes that serve: how far two halves contradict each other."""
+    told: int | None = None
+    """Which of two axes serves although the other does not: `axis_told`."""
+
+    def doubtful(self, options: AxesSettings) -> bool:
+        """Return whether anything speaks against these axes."""
+        most = np.deg2rad(options.largest_disagreement)
+        return bool(self.doubts or self.quality is None or self.quality.halves.max() > most)
+
+    def often_told(self, options: AxesSettings) -> bool:
+        """Return whether one of two axes is told by short movements, many and alike."""
+        if self.told is None or self.quality is None:
+            return False
+        alike = np.rad2deg(self.quality.halves[self.told]) <= options.largest_disagreement
+        return bool(alike and (self.quality.labels == self.told).sum() >= OFTEN)
+
+
+def judged(
+    view: JointView,
+    samples: JointSamples,
+    axes: Array,
+    n_axes: int,
+    find: Finder,
+    search: Searcher,
+    settings: ParameterizationSettings,
+) -> MovementAxes:
+    """Return how good axes from some phases are, and what speaks against them."""
+    options = with_room(settings.axes, view.name)
+    free = in_free_motion(n_axes, options)
+    doubtful = 2 * np.deg2rad(options.largest_uncertainty)
+    # a search in free motion takes seconds: once halves contradict each other that is that
+    quality = assess_axes(samples, axes, find, doubtful if free else np.inf)
+    if n_axes == 1 and options.refine and options.method in BY_ORIENTATION:
+        quality = replace(quality, readings=np.array([other_reading(samples, axes[0])]))
+    nominal = nominal_axes(view.name, axes) if view.human else None
+    positions = view.samples.positions
+    if len(axes) < n_axes:
+        doubts = [f"only {len(axes)} of {n_axes} main movements is there"]
+    else:
+        if free:
+            quality = replace(quality, ranges=_free_ranges(view, axes))
+            options = replace(options, smallest_explained=0.0)
+        doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
+    if nominal is not None and n_axes == 1 and worse_than_body(axes[0], nominal[0], positions):
+        doubts.append("the body frame's axis suits all the movement clearly better")
+    pair = n_axes == 2 and not free
+    told = axis_told(quality, axes, view, options) if doubts and pair else None
+    if doubts and told is None:
+        return MovementAxes(axes, quality, tuple(doubts))
+    quality, apart_by = _contradicted(view, samples, axes, n_axes, quality, search, settings)
+    if not doubts:
+        doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
+    told = axis_told(quality, axes, view, options) if doubts and pair else None
+    remark = _remark(quality, apart_by, told, settings.axes)
+    return MovementAxes(axes, quality, tuple(doubts), remark, told)
+
+
+def _contradicted(
+    view: JointView,
+    samples: JointSamples,
+    axes: Array,
+    n_axes: int,
+    quality: AxesQuality,
+    search: Searcher,
+    settings: ParameterizationSettings,
+) -> tuple[AxesQuality, Array]:
+    """Return the quality with what halves of the time contradict, and the most they do, (n,) rad.
+
+    The most holds halves, too, that are not alike enough to judge the whole.
+    """
+    halves = (half.samples for half in view_halves(view, settings))
+    off, arcs = contradiction(halves, axes, search)
+    comparable = arcs >= COMPARABLE * quality.ranges
+    if n_axes > 1:  # main movements are made one after another: a half may lack one
+        half = parted(len(view.samples.positions))
+        shares = early_share(samples, quality.labels, len(axes), *half)
+        comparable &= np.abs(shares - 0.5) <= 0.5 - LEAST_SHARE
+    halves_apart = np.fmax(quality.halves, np.where(comparable, off, np.nan))
+    said = np.where(arcs >= np.deg2rad(settings.axes.smallest_range), off, 0.0)
+    return replace(quality, halves=halves_apart), np.fmax(halves_apart, said)
+
+
+def with_room(options: AxesSettings, name: str) -> AxesSettings:
+    """Return the limits for a joint of that name: where the body's axes tell less, wider ones."""
+    most = min(room(name) * options.largest_uncertainty, MOST_UNCERTAIN)
+    return replace(options, largest_uncertainty=most)
+
+
+def _remark(quality: AxesQuality, apart_by: Array, told: int | None, options: AxesSettings) -> str:
+    """Return how far halves contradict each other or how uncertain axes are; empty if hardly."""
+    of = slice(None) if told is None else slice(told, told + 1)
+    if np.rad2deg(apart_by[of].max()) > options.largest_disagreement:
+        return apart(apart_by[of])
+    if np.rad2deg(quality.uncertainty[of].max()) > options.largest_uncertainty:
+        return uncertain(quality, told)
+    return ""
+
+
+def in_free_motion(n_axes: int, options: AxesSettings) -> bool:
+    """Return whether the method needs no main movements."""
+    return options.method == "universal-joint" and n_axes == 2
+
+
+def _free_ranges(view: JointView, axes: Array) -> Array:
+    """Return the ranges of both angles of a joint that moves about its axes at once, (2,) rad."""
+    at = view.calibration
+    angles = two_axis_angles(
+        view.samples.rotations,
+        axes,
+        reference_rotation(view.samples),
+        view.long_axis,
+        view.twist_known[at],
+        AngleSettings(),
+    ).angles[:, :2]
+    low, high = np.percentile(angles, PERCENTILES, axis=0)
+    return np.asarray(high - low)

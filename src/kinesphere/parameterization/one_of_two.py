@@ -1,0 +1,77 @@
+"""One axis that a joint's movement tells, and the other put across it."""
+
+import numpy as np
+
+from kinesphere.data import Array
+from kinesphere.parameterization.anatomy import body_axes, without_side
+from kinesphere.parameterization.confidence import AxesQuality
+from kinesphere.parameterization.second_axis import second_axis
+from kinesphere.parameterization.settings import AxesSettings
+from kinesphere.parameterization.view import JointView
+
+REPEATED = 2  # phases of each main movement: one alone contradicts nothing, where there are more
+FARTHEST = 30.0  # deg from the body's axis: two measured axes confirm each other, one alone has
+# nothing but the body's beside it; functional hips, lumbar and necks are 3-16° off
+FARTHEST_AT = {
+    "ankle": 45.0
+}  # the body has none for the joint below the ankle, whose axis rises by
+# 42° (Isman & Inman 1969)
+
+
+def axis_told(quality: AxesQuality, axes: Array, view: JointView, s: AxesSettings) -> int | None:
+    """Return which of two axes its movement tells although the other is doubtful; None if not one.
+
+    Beside what is asked of every axis (range, halves, uncertainty), its phases must be pure by
+    themselves and more than one, and it must lie near an axis of the body.
+
+    Parameters
+    ----------
+    quality
+        Of ``axes``.
+    axes : (n_found, 3)
+        One or two.
+    view
+        The joint: whether anatomy says where it can have axes.
+    s
+        The limits.
+    """
+    least_ratio = np.sqrt(s.purest / (1 - s.purest)) if s.purest < 1 else np.inf
+    with np.errstate(invalid="ignore"):
+        told = (
+            (np.rad2deg(quality.ranges) >= s.smallest_range)
+            & (np.rad2deg(quality.halves) <= 2 * s.largest_uncertainty)
+            & (np.rad2deg(quality.uncertainty) <= s.largest_uncertainty)
+            & (quality.conditioning >= least_ratio)
+        )
+    told &= np.bincount(quality.labels[quality.labels >= 0], minlength=len(axes)) >= REPEATED
+    body = body_axes(view.name)
+    if view.human and body is not None:
+        farthest = FARTHEST_AT.get(without_side(view.name), FARTHEST)
+        told &= np.abs(axes @ body[:2].T).max(axis=1) >= np.cos(np.deg2rad(farthest))
+    return int(told.argmax()) if told.sum() == 1 else None
+
+
+def completed(axis: Array, name: str, limb: Array) -> tuple[Array, int]:
+    """Return an axis and one across it, distal first, (2, 3), and where in them the axis is.
+
+    The other is the body frame's as far as it lies across; flexion is proximal. Of a joint nobody
+    named the axis is proximal, and the other lies across it and the limb.
+
+    Parameters
+    ----------
+    axis : (3,)
+        In the parent.
+    name
+        Of the joint.
+    limb : (3,)
+        Where the limb points on average, in the parent.
+    """
+    body = body_axes(name)
+    if body is None:
+        side = np.eye(3)[np.abs(limb).argmin()]
+        return np.array([second_axis(axis, limb, side), axis]), 1
+    mine = int(np.abs(body[:2] @ axis).argmax())
+    axis = axis if body[mine] @ axis >= 0 else -axis
+    other = body[1 - mine] - (body[1 - mine] @ axis) * axis
+    other /= np.linalg.norm(other)
+    return (np.array([other, axis]), 1) if mine == 0 else (np.array([axis, other]), 0)
