@@ -239,6 +239,7 @@ def bars(found: dict[str, Any]) -> list[Bar]:
             cross["delivered"]["median"],
             "deg",
             1.0,
+            beside=True,
         ),
     ]
 
