@@ -97,9 +97,11 @@ def likeliest_axes(motion: FreeMotion, starts: Sequence[Array]) -> AxesFit:
     motion
         Some 200 frames at least.
     starts : (2, 3) each
-        The likeliest end counts.
+        The one that a few steps make likeliest counts.
     """
     thinned = motion.thinned()
+    if len(starts) == 1:
+        return _descend(thinned, starts[0], STEPS)
     few = thinned.first(TRIAL_FRAMES)
     best = min((_descend(few, start, TRIAL) for start in starts), key=lambda fit: fit.cost)
     return _descend(thinned, best.axes, STEPS)

@@ -33,8 +33,9 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
     from several starts. Twist about the limb is not part of such a joint: it acts as noise of its
     own direction, and much of it spoils the axes. The best few ends are therefore starts of
     `likeliest_axes`, which takes the twist as what it is, unless ``refine`` is off or the
-    movement too short. From where that ends `sparsest_axes` takes the angles for rhythms, and
-    the likelier of the two counts. One-axis joints are left to the phase method.
+    movement too short. From where that ends `sparsest_axes` takes the angles for rhythms, from
+    there the processes have another try, and what is likeliest counts. One-axis joints are left to
+    the phase method.
 
     Returns
     -------
@@ -65,8 +66,10 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
     measured = samples.rotations if samples.measured is None else samples.measured
     motion = FreeMotion(measured[moving], at / samples.rate, samples.long_axis, reference)
     smooth = likeliest_axes(motion, axes)
-    rhythmic = sparsest_axes(motion.thinned(), smooth.axes)
-    return min(smooth, rhythmic, key=lambda fit: fit.cost).axes
+    fits = [smooth, sparsest_axes(motion.thinned(), smooth.axes)]
+    if fits[1].cost < smooth.cost:  # rhythms, or the first descent was caught in gimbal lock
+        fits.append(likeliest_axes(motion, [fits[1].axes]))
+    return min(fits, key=lambda fit: fit.cost).axes
 
 
 def _distinct(fits: list[Fit]) -> list[Fit]:
