@@ -16,6 +16,7 @@ from benchmarks.axes import (
     filters,
     floor,
     free_motion,
+    held,
     normalization,
     one_wide,
     outlying,
@@ -125,6 +126,7 @@ SECTIONS: Mapping[str, Callable[[Run, Path], dict[str, Any]]] = {
     "floor": lambda run, _: {
         "floor": floor.summary(run("floor of free motion", floor.run, floor.TASKS))
     },
+    "held": lambda run, _: {"held": held.summary(run("held by free motion", held.run, held.TASKS))},
 }
 
 

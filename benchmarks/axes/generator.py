@@ -20,6 +20,7 @@ LENGTH = 0.3  # m, of the limb; its mid point is half of it away from the joint
 SWAY = 0.3  # deg, of somebody who stands
 AMPLITUDES = (45.0, 40.0)  # deg to both sides
 JITTER = 0.15  # of an amplitude, from one repetition to the next
+BAND = (0.15, 0.7)  # Hz, of free motion
 MEMORY = 0.4  # s, of correlated noise
 LAG = 0.06  # s, of soft tissue
 LEAST_OPENING = np.sin(np.deg2rad(30.0))  # of the resting limb to the plane of its axes
@@ -167,10 +168,12 @@ def make_free_motion(
     amplitudes: tuple[float, float] = AMPLITUDES,
     twist: float = 0.0,
     seconds: float = 20.0,
+    rhythm: bool = True,
 ) -> TrueJoint:
     """Move about both axes at once, and twist by up to ``twist`` deg."""
     n = round(RATE * seconds)
-    angles = np.column_stack([np.deg2rad(reach) * swing(rng, n) for reach in (*amplitudes, twist)])
+    play = swing if rhythm else drift
+    angles = np.column_stack([np.deg2rad(reach) * play(rng, n) for reach in (*amplitudes, twist)])
     return _joint(rng, cones, noise, angles, np.ones((n, 2), dtype=bool))
 
 
@@ -196,8 +199,23 @@ def wander(rng: np.random.Generator, n: int, width: int) -> Array:
 def swing(rng: np.random.Generator, n: int) -> Array:
     """Return a smooth play of three frequencies between 0.15 and 0.7 Hz that reaches ±1, (n,)."""
     t = np.arange(n) / RATE
-    frequencies, phases = rng.uniform(0.15, 0.7, 3), rng.uniform(0, 2 * np.pi, 3)
+    frequencies, phases = draw_rhythm(rng)
     play = np.sin(2 * np.pi * np.outer(t, frequencies) + phases).sum(axis=1)
+    return np.asarray(play / np.abs(play).max())
+
+
+def draw_rhythm(rng: np.random.Generator) -> tuple[Array, Array]:
+    """Draw three frequencies, Hz, and three phases, rad."""
+    return rng.uniform(*BAND, 3), rng.uniform(0, 2 * np.pi, 3)
+
+
+def drift(rng: np.random.Generator, n: int) -> Array:
+    """Return noise of the same frequencies that reaches ±1, (n,): no rhythm, nothing returns."""
+    whole = 4 * n  # ends need not meet
+    frequencies = np.fft.rfftfreq(whole, 1 / RATE)
+    waves = rng.normal(size=(len(frequencies), 2)) @ [1, 1j]
+    inside = (frequencies > BAND[0]) & (frequencies < BAND[1])
+    play = np.fft.irfft(waves * inside, whole)[:n]
     return np.asarray(play / np.abs(play).max())
 
 

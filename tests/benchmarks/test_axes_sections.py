@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from benchmarks.axes import __main__ as main
-from benchmarks.axes import floor, free_motion, segments
+from benchmarks.axes import floor, free_motion, held, segments
 from benchmarks.axes.angles import run_cross_talk
 from benchmarks.axes.estimators import run
+from benchmarks.axes.generator import RATE
 from benchmarks.axes.normalization import POSES, PROTOCOLS, RULES, Protocol, record, told
 from benchmarks.axes.papers_metrics import joint_rows, measured_rows, pooled, with_random_axes
 from benchmarks.axes.repeatability import (
@@ -215,6 +216,21 @@ def test_without_twist_and_noise_least_twist_is_the_truth():
     assert max(floor.run("20 s without twist", "clean", 3000)) < 1e-4
     twisted = floor.run("20 s, ±10° of twist", "clean", 3000)
     assert max(twisted) > 0.1  # chance twist pulls them away
+
+
+def test_what_free_motion_holds_is_its_noise_over_its_rhythms():
+    errors, bounds = held.run("20 s, ±10° of twist", 3000)
+    assert 0.2 < min(bounds) <= max(bounds) < 1.5  # 1° of errors with 0.4 s of memory in 20 s
+    assert max(errors) < 4 * max(bounds)
+
+
+def test_motion_without_rhythm_keeps_its_band():
+    joint = free_motion.make("60 s, ±10° of twist, no rhythm", "clean", 3000)
+    power = np.abs(np.fft.rfft(joint.angles * np.hanning(len(joint.angles))[:, None], axis=0)) ** 2
+    frequencies = np.fft.rfftfreq(len(joint.angles), 1 / RATE)
+    inside = (frequencies > 0.12) & (frequencies < 0.73)  # Hz, what the window widens included
+    assert (power[inside].sum(axis=0) > 0.95 * power[1:].sum(axis=0)).all()
+    assert_allclose(np.rad2deg(np.abs(joint.angles).max(axis=0)), [45, 40, 10])
 
 
 def test_figures_survive_the_file():

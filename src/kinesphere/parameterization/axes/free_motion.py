@@ -78,8 +78,8 @@ class AxesFit(NamedTuple):
     """Negative logarithm of the posterior, less a constant."""
 
 
-def likeliest_axes(motion: FreeMotion, starts: Sequence[Array]) -> Array:
-    """Return two axes, (2, 3), by maximum a posteriori, distal first.
+def likeliest_axes(motion: FreeMotion, starts: Sequence[Array]) -> AxesFit:
+    """Return two axes by maximum a posteriori.
 
     Two axes and a twist rebuild every pose, so only what the three angles are like in time speaks
     for one pair of axes against another. Seen about the axes a person moves around, they go their
@@ -97,12 +97,14 @@ def likeliest_axes(motion: FreeMotion, starts: Sequence[Array]) -> Array:
     motion
         Some 200 frames at least.
     starts : (2, 3) each
-        The likeliest end counts.
+        The one that a few steps make likeliest counts.
     """
     thinned = motion.thinned()
+    if len(starts) == 1:
+        return _descend(thinned, starts[0], STEPS)
     few = thinned.first(TRIAL_FRAMES)
     best = min((_descend(few, start, TRIAL) for start in starts), key=lambda fit: fit.cost)
-    return _descend(thinned, best.axes, STEPS).axes
+    return _descend(thinned, best.axes, STEPS)
 
 
 def _descend(motion: FreeMotion, start: Array, steps: int) -> AxesFit:

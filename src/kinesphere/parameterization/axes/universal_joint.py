@@ -10,6 +10,7 @@ from kinesphere.geometry.rotations import mean_rotation, rotation_angle, tangent
 from kinesphere.parameterization.axes.free_motion import FreeMotion, likeliest_axes
 from kinesphere.parameterization.axes.joint_kernels import constraint_residuals
 from kinesphere.parameterization.axes.phase_log_pca import phase_log_pca
+from kinesphere.parameterization.axes.spectra import sparsest_axes
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import AxesSettings
 
@@ -32,7 +33,9 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
     from several starts. Twist about the limb is not part of such a joint: it acts as noise of its
     own direction, and much of it spoils the axes. The best few ends are therefore starts of
     `likeliest_axes`, which takes the twist as what it is, unless ``refine`` is off or the
-    movement too short. One-axis joints are left to the phase method.
+    movement too short. From where that ends `sparsest_axes` takes the angles for rhythms, from
+    there the processes have another try, and what is likeliest counts. One-axis joints are left to
+    the phase method.
 
     Returns
     -------
@@ -62,7 +65,11 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
     # smoothing would hide from the likelihood what the errors of the poses are like
     measured = samples.rotations if samples.measured is None else samples.measured
     motion = FreeMotion(measured[moving], at / samples.rate, samples.long_axis, reference)
-    return likeliest_axes(motion, axes)
+    smooth = likeliest_axes(motion, axes)
+    fits = [smooth, sparsest_axes(motion.thinned(), smooth.axes)]
+    if fits[1].cost < smooth.cost:  # rhythms, or the first descent was caught in gimbal lock
+        fits.append(likeliest_axes(motion, [fits[1].axes]))
+    return min(fits, key=lambda fit: fit.cost).axes
 
 
 def _distinct(fits: list[Fit]) -> list[Fit]:
