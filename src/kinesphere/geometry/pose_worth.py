@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.geometry.joint_turns import crowds, joint_turns
+from kinesphere.geometry.joint_turns import joint_turns
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ def pose_worth(share: float, crowd: Array, looks: float, hidden: float) -> Array
     return worth
 
 
-def crowding(rotations: Array) -> Array:
+def crowding(rotations: Array, crowd: Array) -> Array:
     """Return how many frames share what lasts with each pose, where skin is fitted along, (n,).
 
     Where a joint turns far, skin that goes with it is told apart from its centre, and every frame
@@ -64,9 +64,11 @@ def crowding(rotations: Array) -> Array:
     Parameters
     ----------
     rotations : (n, 3, 3)
+    crowd : (n,)
+        As `kinesphere.geometry.joint_turns.crowds` returns it.
     """
     turns = joint_turns(rotations)
     widest = float(np.linalg.eigvalsh(turns.T @ turns / len(turns))[2])
     little = 1 / (1 + (widest / NARROW**2) ** 2)
-    shared: Array = crowds(rotations) ** little
+    shared: Array = crowd**little
     return shared

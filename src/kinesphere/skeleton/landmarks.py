@@ -18,6 +18,8 @@ far as the markers themselves, for a foot's lie all but at the ankle."""
 NO_LANDMARK_FIRM = 0.25
 """The same where there is little else that tells: of a joint with one axis (knees and elbows lie
 about midway), and where a limb has too few markers for a pose of its own."""
+MIDWAY_OFF = 3**-0.5
+"""Spreads in each direction by which it is off, for the share is of how far off it is in all."""
 OWN_POSE = 3
 """Markers that give a pose."""
 
