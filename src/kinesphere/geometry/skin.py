@@ -35,6 +35,8 @@ NONE = 1e-12
 RIGID = 1.5
 """How many times more of the skin's movement is rigid, and shows in no residual, than is not: on
 synthetic skin the errors of hips are least from 1 to 1.5."""
+BY_CHANCE = 0.1
+"""Share of the variance that goes with a joint which is left to skin if chance explains it all."""
 SKIN_TOLD = 0.5
 """Share of the skin that settings allow for that is to be expected: `RIGID` of three."""
 FEW = 10
@@ -68,15 +70,20 @@ def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
         As `joint_modes` returns them.
     """
     n = local.shape[1]
-    noise = np.zeros(n)
+    noise, chance = np.zeros(n), np.zeros(n)
     for m in range(n):
         off = local[:, m] - shape[m]
         known = is_seen(off)
         if known.sum() < FEW:
             continue
         q = modes[known] - modes[known].mean(axis=0)
-        slope = np.linalg.lstsq(q, off[known] - off[known].mean(axis=0), rcond=1e-6)[0]
+        off = off[known] - off[known].mean(axis=0)
+        slope = np.linalg.lstsq(q, off, rcond=1e-6)[0]
         noise[m] = np.sqrt(np.mean((q @ slope) ** 2))
+        chance[m] = 3 * np.mean((off - q @ slope) ** 2) / max(len(q) - 4, 1)
+    # noise goes with a joint by chance, too: as much of it in every marker
+    total = float((noise**2).sum())
+    noise *= np.sqrt(max(1 - chance.sum() / max(total, 1e-300), BY_CHANCE))
     # the fit itself takes up six of the coordinates: what is left looks smaller than it is
     noise *= np.sqrt(3 * n / max(3 * n - 6, 1))
     return np.where(noise > LEAST, noise, NONE)
