@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 from kinesphere.geometry.algebraic_centres import sphere_centre
 from kinesphere.geometry.centre_covariance import Told, covariance_of, data_covariance_of
 from kinesphere.geometry.centre_descent import descend, mean_residual
-from kinesphere.geometry.centre_terms import find_information
+from kinesphere.geometry.centre_terms import averaging_share, find_information
 from kinesphere.geometry.centre_views import Turning as Turning
 from kinesphere.geometry.centre_views import View as View
 from kinesphere.geometry.joint_turns import main_axis
 from kinesphere.geometry.medians import column_medians
+from kinesphere.geometry.pose_worth import overrated
 from kinesphere.geometry.skin import FEW, fit_through_skin
 from kinesphere.geometry.vectors import lengths
 
@@ -125,10 +126,13 @@ def fit_centre(
 
 
 def with_expectation(
-    centre: Array, information: Array, spread: float, noise: float, n_poses: int
+    centre: Array, information: Array, spread: float, noise: float, n_poses: int, over: float = 1.0
 ) -> CentreFit:
-    """Return a centre found in another way, from what the motion told about it, (3, 3) 1/m²."""
-    prior, told = np.eye(3) / spread**2, Told(information, information)
+    """Return a centre found in another way, from what the motion told about it, (3, 3) 1/m².
+
+    ``over`` is how many times its variance is what this information says.
+    """
+    prior, told = np.eye(3) / spread**2, Told(information, over * information)
     return CentreFit(
         centre=centre,
         noise=noise,
@@ -180,7 +184,11 @@ def _fit(
     looks = n_poses / hidden**2 / (1 if turning is None else 2)
     x = descend(view, x, expected, prior, looks, rounds)
     information = find_information(view, x, looks)
-    return x, Told(information, information)
+    share = averaging_share(view, x)
+    over = overrated(share, len(view.points), n_poses, hidden)
+    # and no number of poses tells a centre better than what lasts lets it be the same
+    lasts = (1 - share) * _robust_noise(view, x) ** 2
+    return x, Told(information, over * information + lasts * information @ information)
 
 
 def count_poses(view: View, centre: Array) -> int:

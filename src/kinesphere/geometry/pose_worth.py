@@ -53,6 +53,19 @@ def pose_worth(share: float, crowd: Array, looks: float, hidden: float) -> Array
     return worth
 
 
+def overrated(share: float, n_frames: int, n_poses: int, hidden: float) -> float:
+    """Return how many times a centre's variance is what looks say that take all strays to last.
+
+    Such looks are as many as poses, each worth 1/``hidden``² of what its residual says.
+
+    Parameters
+    ----------
+    share
+        As `noise_share` returns it.
+    """
+    return share * n_poses / hidden**2 / max(n_frames, n_poses) + 1 - share
+
+
 def crowding(rotations: Array, crowd: Array) -> Array:
     """Return how many frames share what lasts with each pose, where skin is fitted along, (n,).
 

@@ -11,7 +11,7 @@ from kinesphere.geometry.pose_errors import pose_covariance
 from kinesphere.geometry.rigid import RigidFit, into_frame
 from kinesphere.geometry.skin import skin_noise
 from kinesphere.skeleton.body import NOISE, Body, measure_shape
-from kinesphere.skeleton.landmarks import BETWEEN, MIDWAY_OFF, expected_centre
+from kinesphere.skeleton.landmarks import expected_centre, expected_off
 from kinesphere.skeleton.linked_joint import LinkedJoint
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud
@@ -65,7 +65,7 @@ def find_joint(
             view,
             expected,
             spread,
-            off=MIDWAY_OFF if source == BETWEEN else 1.0,
+            off=expected_off(source, parent, labels),
             hidden=settings.soft_tissue,
             hinge=parent.right if joint.n_axes == 1 else None,
             tighter=settings.hinge,
