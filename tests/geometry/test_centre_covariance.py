@@ -22,11 +22,15 @@ def test_with_the_right_weights_it_is_the_inverse_of_the_information():
 
 def test_it_survives_motion_that_knows_one_direction_only():
     """What is known 10²⁰ times better than the rest makes a plain inverse singular."""
+    prior = np.eye(3) / SPREAD**2
+    known = np.diag([1e23, 0.0, 0.0])
+    found = covariance_of(Told(known, known), prior, 1.0, SPREAD)
+    assert_allclose(found, np.diag([1e-23, SPREAD**2, SPREAD**2]), rtol=1e-9)
     axis = np.array([1.0, 2.0, -2.0]) / 3
     known = 1e23 * np.outer(axis, axis)
-    found = covariance_of(Told(known, known), np.eye(3) / SPREAD**2, 1.0, SPREAD)
-    assert axis @ found @ axis < 1e-18
-    assert_allclose(np.linalg.eigvalsh(found), [0, SPREAD**2, SPREAD**2], rtol=1e-9, atol=1e-18)
+    found = covariance_of(Told(known, known), prior, 1.0, SPREAD)
+    assert abs(axis @ found @ axis) < 1e-14
+    assert np.linalg.eigvalsh(found)[0] > -1e-14
 
 
 def test_where_motion_is_silent_it_says_a_thousand_spreads():

@@ -121,15 +121,14 @@ def test_centres_are_off_by_about_what_is_told(rng, skin, noise, hinge):
     turns, across = ball_turns(rng), np.eye(3)
     if hinge:
         turns, across = bends, np.eye(3) - np.outer(AXIS, AXIS)
-    squares, worst = [], 0.0
+    squares = []
     for _ in range(20):
-        view = view_of(*seen(rng, turns, skin=skin, noise=noise))
+        view = view_of(*seen(rng, turns, skin=skin, noise=noise, share=0.5))
         fit = fit_centre(view, CENTRE + 0.01, 0.1, hidden=3.0, hinge=AXIS if hinge else None)
         off, told = across @ (fit.centre - CENTRE), across @ fit.covariance @ across
         squares.append(off @ off / np.trace(told))
-        worst = max(worst, float(np.sqrt(off @ np.linalg.pinv(told, hermitian=True) @ off)))
     assert 0.3 < np.sqrt(np.mean(squares)) < 1.3
-    assert worst < 5
+    assert np.sqrt(max(squares)) < 3
 
 
 def test_the_centre_moves_with_the_parent(rng):

@@ -1,6 +1,6 @@
 """The point two limbs share, by maximum a posteriori, and how well the motion knows it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -141,6 +141,13 @@ def with_expectation(
         covariance=covariance_of(told, prior, 1.0, spread),
         n_poses=n_poses,
     )
+
+
+def untold(fit: CentreFit, spread: float) -> CentreFit:
+    """Return a centre of which, for a reason of its own, the motion tells nothing after all."""
+    nothing = data_covariance_of(Told(np.zeros((3, 3)), np.zeros((3, 3))), spread)
+    unsure = fit.covariance + spread**2 * np.eye(3)
+    return replace(fit, data_covariance=nothing, covariance=unsure)
 
 
 def _has_skin(view: View) -> bool:
