@@ -15,8 +15,8 @@ JUMP = 0.05
 
 SOME = 3
 """Markers of a limb that tell what its joint does."""
-TINY = 1e-9
-"""m, way of a joint that does nothing."""
+TINY = 1e-3
+"""m, way of a joint that does nothing but round."""
 
 BLOCK = 16384
 """Frames looked at at a time."""
