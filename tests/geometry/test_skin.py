@@ -10,7 +10,8 @@ from kinesphere.geometry.pose_errors import pose_covariance
 from kinesphere.geometry.pose_worth import noise_share, pose_worth
 from kinesphere.geometry.rigid import fit_rigid, fit_shape, into_frame
 from kinesphere.geometry.rotations import rotation_exp
-from kinesphere.geometry.skin import fit_through_skin, skin_noise
+from kinesphere.geometry.skin import fit_through_skin
+from kinesphere.geometry.skin_noise import skin_noise
 
 FRAMES = 160
 PARENT = np.array([[75, -17, -144], [71, -40, 112], [-93, 22, -56], [-92, 16, 35], [-82, 53, -13]])

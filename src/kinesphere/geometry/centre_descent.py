@@ -23,7 +23,9 @@ def mean_residual(view: View, x: Array) -> float:
     return float(np.mean(np.concatenate(off))) if off else 0.0
 
 
-def descend(view: View, x: Array, expected: Array, prior: Array, looks: float, rounds: int) -> Array:
+def descend(
+    view: View, x: Array, expected: Array, prior: Array, looks: float, rounds: int
+) -> Array:
     """Return the centre, (3,), by Gauss-Newton; weights and scales follow the current point."""
     for _ in range(rounds):
         hessian, gradient = prior, prior @ (x - expected)

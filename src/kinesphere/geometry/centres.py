@@ -11,20 +11,17 @@ from kinesphere.geometry.centre_descent import descend, mean_residual
 from kinesphere.geometry.centre_terms import averaging_share, find_information
 from kinesphere.geometry.centre_views import Turning as Turning
 from kinesphere.geometry.centre_views import View as View
-from kinesphere.geometry.joint_turns import main_axis
+from kinesphere.geometry.hinge_expectation import open_axis, tighter_along
 from kinesphere.geometry.medians import column_medians
 from kinesphere.geometry.pose_worth import overrated
-from kinesphere.geometry.skin import FEW, fit_through_skin
+from kinesphere.geometry.skin import fit_through_skin
+from kinesphere.geometry.skin_noise import FEW
 from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
 
 CELL = np.deg2rad(10.0)
 """rad, poses nearer to each other than this count as one: soft tissue errs alike in both."""
-ALIGNED = 0.8
-"""Least cosine between the axis of a hinge and the direction its motion knows least."""
-FIRM = 16.0
-"""Information from the motion, in the expectation's units, above which a hinge is left to it."""
 FAR = 10.0
 """Spreads from the expectation beyond which an algebraic centre is no place to start from."""
 
@@ -103,12 +100,12 @@ def fit_centre(
     prior = np.eye(3) / spread**2
     if _has_skin(view):
         if hinge is not None:
-            prior = prior + _single(view, expected, tighter) / spread**2
+            prior = prior + tighter_along(view, expected, tighter) / spread**2
         x, told = _fit(view, x, expected, prior, hidden, rounds)
     else:
         # nearly without expectation a centre may flee along the axis: no place to start from
         loose = _fit(view, x, expected, 0.01 * prior, hidden, rounds)[1].pull
-        along = None if hinge is None else _open_axis(loose, spread, hinge)
+        along = None if hinge is None else open_axis(loose, spread, hinge)
         if along is not None:
             prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
         x, told = _fit(view, x, expected, prior, hidden, rounds)
@@ -154,29 +151,6 @@ def _has_skin(view: View) -> bool:
     """Return whether it is known what goes with the joint, and in poses enough to reckon with."""
     turning = view.turning
     return turning is not None and turning.skin is not None and bool(turning.known.sum() >= FEW)
-
-
-def _single(view: View, expected: Array, tighter: float) -> Array:
-    """Return how much tighter a hinge is expected, (3, 3), in the expectation's own units.
-
-    Along the axis it turns about. As far as single rotations stray from that axis, or it points
-    along the limb, what is unsure across it is unsure along it.
-    """
-    assert view.turning is not None
-    axis, strays = main_axis(view.turning)
-    points, seen, *_ = view.sightings
-    arm = (points[seen] - expected).sum(axis=0) if seen.any() else np.zeros(3)
-    pointing = float((axis @ arm) ** 2 / max(arm @ arm, 1e-300))
-    times = 1 / (1 / tighter**2 + strays + pointing)
-    more: Array = max(times - 1, 0.0) * np.outer(axis, axis)
-    return more
-
-
-def _open_axis(information: Array, spread: float, hinge: Array) -> Array | None:
-    """Return the direction in which a hinge's centre is left to its expectation, (3,)."""
-    values, vectors = np.linalg.eigh(information)
-    aligned = abs(vectors[:, 0] @ hinge) > ALIGNED
-    return vectors[:, 0] if aligned and values[0] * spread**2 < FIRM else None
 
 
 def _fit(

@@ -24,24 +24,16 @@ from kinesphere.geometry.joint_turns import (
 from kinesphere.geometry.pose_worth import crowding, noise_share, pose_worth
 from kinesphere.geometry.shake import clear_of_shake, doubt_of, find_shake
 from kinesphere.geometry.skin_equations import Skin, equations, root_of
-from kinesphere.geometry.vectors import is_seen, lengths
+from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
 
-LEAST = 1e-7
-"""m, movement of a marker with the skin below which there is none: rounding is all it is."""
-NONE = 1e-12
-"""m, what stands for none."""
 RIGID = 1.5
 """How many times more of the skin's movement is rigid, and shows in no residual, than is not: on
 synthetic skin the errors of hips are least from 1 to 1.5."""
-BY_CHANCE = 0.1
-"""Share of the variance that goes with a joint which is left to skin if chance explains it all."""
 SKIN_TOLD = 2 / 3
 """Share of the skin that settings allow for that is to be expected. With half of it synthetic
 centres are off by 0.6 of what is told, hips of one person in several trials by 1.6."""
-FEW = 10
-"""Poses below which nothing is said about skin."""
 ROUNDING = 1e-13
 """Share of each unknown's own weight that keeps equations solvable: what rounding leaves."""
 SETTLED = 1e-6
@@ -57,37 +49,6 @@ def feigned(view: View, hidden: float) -> float:
     skin, noise = (turning.skin, turning.skin_seeing), (turning.pose, view.pose)
     most = [float(np.linalg.eigvalsh(c[:3, :3])[-1]) for c in (*skin, *noise)]
     return hidden**2 * (most[0] + most[1]) + most[2] + most[3]
-
-
-def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
-    """Return how far each marker moves in its limb with a joint, m rms in each direction, (m,).
-
-    Parameters
-    ----------
-    local : (n_frames, n_markers, 3) m
-        Markers in their limb's frame; NaN where not seen.
-    shape : (n_markers, 3) m
-    modes : (n_frames, 3)
-        As `joint_modes` returns them.
-    """
-    n = local.shape[1]
-    noise, chance = np.zeros(n), np.zeros(n)
-    for m in range(n):
-        off = local[:, m] - shape[m]
-        known = is_seen(off)
-        if known.sum() < FEW:
-            continue
-        q = modes[known] - modes[known].mean(axis=0)
-        off = off[known] - off[known].mean(axis=0)
-        slope = np.linalg.lstsq(q, off, rcond=1e-6)[0]
-        noise[m] = np.sqrt(np.mean((q @ slope) ** 2))
-        chance[m] = 3 * np.mean((off - q @ slope) ** 2) / max(len(q) - 4, 1)
-    # noise goes with a joint by chance, too: as much of it in every marker
-    total = float((noise**2).sum())
-    noise *= np.sqrt(max(1 - chance.sum() / max(total, 1e-300), BY_CHANCE))
-    # the fit itself takes up six of the coordinates: what is left looks smaller than it is
-    noise *= np.sqrt(3 * n / max(3 * n - 6, 1))
-    return np.where(noise > LEAST, noise, NONE)
 
 
 class SkinFit(NamedTuple):

@@ -76,11 +76,9 @@ def fit_skeleton(
     tree = find_tree(recording, model)
     used = [label for limb in tree.limbs for label in tree.markers[limb]]
     columns = recording.columns(tuple(used))
-    joints = [
-        (recording.columns(tree.markers[joint.parent]), recording.columns(tree.markers[joint.child]))
-        for joint in tree.joints
-    ]
-    frames = spread_over_joints(recording.markers, settings.sample_frames, joints)
+    frames = spread_over_joints(
+        recording.markers, settings.sample_frames, tree.joint_columns(recording)
+    )
     asked, share = settings, size_share(recording.markers[frames][:, columns])
     settings = scaled(asked, share)
     markers = {label: recording.markers[:, i] for i, label in enumerate(recording.labels)}

@@ -9,7 +9,7 @@ from kinesphere.geometry.centres import Turning, View, fit_centre, untold
 from kinesphere.geometry.joint_turns import joint_modes
 from kinesphere.geometry.pose_errors import pose_covariance
 from kinesphere.geometry.rigid import RigidFit, into_frame
-from kinesphere.geometry.skin import skin_noise
+from kinesphere.geometry.skin_noise import skin_noise
 from kinesphere.skeleton.body import NOISE, Body, measure_shape
 from kinesphere.skeleton.landmarks import expected_centre, expected_off
 from kinesphere.skeleton.linked_joint import LinkedJoint
