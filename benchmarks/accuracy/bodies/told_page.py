@@ -79,7 +79,8 @@ def _line(name: str, rows: Sequence[Mapping[str, Any]]) -> str:
     over = error[told > EXACT_MM] / told[told > EXACT_MM]
     along = [r["along_mm"] / r["told_along_mm"] for r in rows if r["along_mm"] is not None]
     along = [x for x in along if np.isfinite(x)]
+    beside = f"{np.sqrt(np.mean(np.square(along))):.2f}" if along else "–"
     return (
         f"{start}| {ratio:.2f} | {over.max():.1f} | {(over < 1).mean():.0%} "
-        f"| {(over < 2).mean():.0%} | {np.sqrt(np.mean(np.square(along))):.2f} | {called} |"
+        f"| {(over < 2).mean():.0%} | {beside} | {called} |"
     )

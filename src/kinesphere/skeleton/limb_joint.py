@@ -18,8 +18,8 @@ from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.settings import SkeletonSettings
 
 STRAYS = 0.75
-"""Share of `SkeletonSettings.undetermined_mm` that half of a limb's markers may stray, in each
-direction: skin of 20 mm a radian leaves 3 mm, real shoulders 11, two limbs taken for one 20."""
+"""Share of `SkeletonSettings.undetermined_mm` that a limb's markers may stray in each direction on
+average: skin of 20 mm a radian leaves 3 mm, real trunks 11, two limbs taken for one 20."""
 
 
 class FoundJoint(NamedTuple):
@@ -74,7 +74,7 @@ def find_joint(
             hinge=parent.right if joint.n_axes == 1 else None,
             tighter=settings.hinge,
         )
-    strays = max(float(np.sort(one)[len(one) // 2]) for one in (parent.noise, noise))
+    strays = max(float(np.mean(one)) for one in (parent.noise, noise))
     if strays > STRAYS * settings.undetermined_mm * 1e-3:
         fit = untold(fit, spread)  # what is no body has no joint that its motion could tell
     return FoundJoint(MeasuredJoint(joint, fit, expected, spread, source), own, noise, solid)
