@@ -85,9 +85,9 @@ def scoreboard(bars: Sequence[Bar]) -> str:
         "numbers that were set before anything was measured here. Beside them stand "
         f"{len(beside)} that were added later to tell what a figure consists of, held to the same "
         f"numbers ({sum(bar.met for bar in beside)} meet them). Free motion with twist was asked "
-        "for once, without saying for how long or with how much twist, normalization without saying "
-        "between which poses, cross-talk without saying whether noise is part of it: each way "
-        "counts as a figure of its own.\n",
+        "for once, without saying for how long or with how much twist, normalization without "
+        "saying between which poses, cross-talk without saying whether noise is part of it: "
+        "each way counts as a figure of its own.\n",
         "| | figure | measured | asked | |",
         "|---|---|---:|---:|---|",
     ]

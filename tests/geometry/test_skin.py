@@ -10,7 +10,8 @@ from kinesphere.geometry.pose_errors import pose_covariance
 from kinesphere.geometry.pose_worth import noise_share, pose_worth
 from kinesphere.geometry.rigid import fit_rigid, fit_shape, into_frame
 from kinesphere.geometry.rotations import rotation_exp
-from kinesphere.geometry.skin import fit_through_skin, skin_noise
+from kinesphere.geometry.skin import fit_through_skin
+from kinesphere.geometry.skin_noise import skin_noise
 
 FRAMES = 160
 PARENT = np.array([[75, -17, -144], [71, -40, 112], [-93, 22, -56], [-92, 16, 35], [-82, 53, -13]])
@@ -113,6 +114,24 @@ def test_halves_with_different_movements_agree_better_and_within_what_is_said(rn
     assert np.mean(told) < 2.0
 
 
+@pytest.mark.parametrize(("skin", "noise"), [(0.0, 1e-3), (0.005, NOISE), (0.02, NOISE)])
+@pytest.mark.parametrize("hinge", [False, True])
+def test_centres_are_off_by_about_what_is_told(rng, skin, noise, hinge):
+    """Over noise and skin of several sizes: neither many times too careful nor too sure."""
+    bends = hinge_turns(np.deg2rad(60 - 60 * np.cos(np.linspace(0, 40, FRAMES))))
+    turns, across = ball_turns(rng), np.eye(3)
+    if hinge:
+        turns, across = bends, np.eye(3) - np.outer(AXIS, AXIS)
+    squares = []
+    for _ in range(20):
+        view = view_of(*seen(rng, turns, skin=skin, noise=noise, share=0.5))
+        fit = fit_centre(view, CENTRE + 0.01, 0.1, hidden=3.0, hinge=AXIS if hinge else None)
+        off, told = across @ (fit.centre - CENTRE), across @ fit.covariance @ across
+        squares.append(off @ off / np.trace(told))
+    assert 0.3 < np.sqrt(np.mean(squares)) < 1.3
+    assert np.sqrt(max(squares)) < 3
+
+
 def test_the_centre_moves_with_the_parent(rng):
     parent, child = seen(rng, ball_turns(rng), skin=0.01, noise=NOISE)
     view = view_of(parent, child)
@@ -140,7 +159,8 @@ def test_the_centre_moves_with_the_parent(rng):
     at = turn @ CENTRE + shift
     there = fit_through_skin(moved, at, at, prior, looks)
     assert_allclose(there.centre, turn @ here.centre + shift, atol=EXACT)
-    assert_allclose(there.information, turn @ here.information @ turn.T, rtol=1e-4)
+    for one, other in zip(here.told, there.told, strict=True):
+        assert_allclose(other, turn @ one @ turn.T, rtol=1e-4)
 
 
 def test_the_centre_of_a_hinge_keeps_to_the_expectation_along_it(rng):
@@ -199,6 +219,15 @@ def test_skin_noise_is_what_follows_the_joint_and_no_more(rng):
     grown = np.sqrt(15 / 9)
     assert noise[0] == pytest.approx(0.004 * grown, rel=0.1)
     assert (noise[1:] < 3e-4 * grown).all()
+
+
+def test_what_goes_with_the_joint_by_chance_is_hardly_skin(rng):
+    modes = joint_modes(ball_turns(rng))
+    shape = PARENT * 1e-3
+    jitter = rng.normal(size=(FRAMES, *shape.shape)) * 1e-3
+    by_chance = np.sqrt(15 / 9) * 1e-3 * np.sqrt(3 / FRAMES)
+    noise = skin_noise(shape + jitter, shape, modes)
+    assert 0.2 * by_chance < np.sqrt(np.mean(noise**2)) < 0.7 * by_chance
 
 
 def worth_of(strays, crowd, hidden=3.0, looks=20.0):

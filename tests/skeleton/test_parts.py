@@ -15,7 +15,7 @@ from kinesphere.skeleton.limb_body import joint_noise
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.poses import borrowing
 from kinesphere.skeleton.report import verdict_on
-from kinesphere.skeleton.sampling import spread_frames
+from kinesphere.skeleton.sampling import spread_frames, spread_over_joints
 
 MARKERS = 4
 
@@ -36,6 +36,39 @@ def test_all_frames_where_they_are_few_and_even_ones_where_nothing_moves():
     assert spread_frames(still, 300).tolist() == list(range(200))
     steps = np.diff(spread_frames(still, 20))
     assert steps.min() >= 0.5 * steps.max()
+
+
+def test_joints_have_equal_shares_of_frames_however_small_their_ways():
+    """A hip that moves by a metre for 10 s, an ankle by 2 cm for 5 s, rest, 50 Hz."""
+    t = np.linspace(0, 1, 4000)
+    markers = np.zeros((4000, 6, 3)) + np.arange(6)[:, None]
+    markers[500:1000, 2:4, 0] += np.sin(60 * t[500:1000] * np.pi)[:, None]
+    markers[3000:3250, 4:6, 1] += 0.02 * np.sin(60 * t[3000:3250] * np.pi)[:, None]
+    trunk, thigh, foot = [0, 1], [2, 3], [4, 5]
+    frames = spread_over_joints(markers, 200, [(trunk, thigh), (trunk, foot)])
+    assert len(frames) <= 200
+    assert (np.diff(frames) > 0).all()
+    assert {0, 3999} <= set(frames)
+    hip, ankle = (((lo <= frames) & (frames < hi)).sum() for lo, hi in ((500, 1000), (3000, 3250)))
+    assert 0.6 < hip / ankle < 1.6
+    by_way = spread_frames(markers, 200)
+    assert ((by_way >= 3000) & (by_way < 3250)).sum() < 0.5 * ankle
+    gaps = np.diff(frames)
+    assert gaps.max() <= 4000 / 100 + 1  # half of them are even in time
+
+
+def test_ghosts_and_gaps_are_no_way_of_a_joint(rng):
+    markers = np.cumsum(rng.normal(scale=0.003, size=(1000, 4, 3)), axis=0)
+    joints = [([0, 1], [2, 3])]
+    there = spread_over_joints(markers, 60, joints)
+    assert spread_over_joints(markers, 1000, joints).tolist() == list(range(1000))
+    spoilt = markers.copy()
+    spoilt[500, 2] += 100.0
+    spoilt[700:710, 1] = np.nan
+    assert len(np.intersect1d(there, spread_over_joints(spoilt, 60, joints))) > 30
+    assert spread_over_joints(np.full((1000, 4, 3), np.nan), 60, joints).size
+    back = 999 - spread_over_joints(markers[::-1], 60, joints)
+    assert len(np.intersect1d(there, back)) >= len(there) - 2
 
 
 def test_a_twist_is_borrowed_above_one_angle_and_kept_above_a_smaller():

@@ -11,6 +11,7 @@ from benchmarks.accuracy.bodies.centres import centres_section
 from benchmarks.accuracy.bodies.changes import changes_section
 from benchmarks.accuracy.bodies.linked_limbs import linked_section
 from benchmarks.accuracy.bodies.perturbed import perturbed_section
+from benchmarks.accuracy.bodies.told_page import told_bars, told_section
 
 SIZES = [2, 3, 4]
 """Markers of the unlabelled arm's bodies."""
@@ -111,6 +112,7 @@ def bars(found: dict[str, Any]) -> list[Bar]:
             all(row["observability"] == "hinge" for row in knees),
         ),
         _at_most("hip centre between halves", max(row["halves_mm"] for row in hips), 10.0, "mm"),
+        *(Bar(*one) for one in told_bars(found["told"])),
         _at_most("24,000 frames × 48 markers, one core", seconds, 3.0, "s"),
         _at_most("memory for that", cost["memory_mb"], 1000.0, "MB"),
     ]
@@ -126,6 +128,7 @@ def page(found: dict[str, Any]) -> str:
             changes_section(found["changes"]),
             perturbed_section(found["perturbed"]),
             centres_section(found["centres"]),
+            told_section(found["told"]),
             _functional(found["functional"], found["peer"]),
             _arm(found["arm"]),
             linked_section(found["linked"]),
@@ -192,8 +195,9 @@ def _functional(rows: Sequence[dict[str, Any]], peer: str) -> str:
         "is from the motion. *Halves* are the first and the second half of the trial, in which "
         "people make different movements (a hip 77° in one, 53° in the other); *eighths* every "
         "second eighth against the rest. *Told* is the rms difference that the uncertainties in "
-        "`skeleton.json` lead to expect between the halves; those of axes hold what is alike in "
-        "both, too. Centres of knees across their axis; "
+        "`skeleton.json` lead to expect between the halves; they hold what is alike in both "
+        "halves, too: skin that goes with a knee draws it aside in either. Centres of knees across "
+        "their axis; "
         f"*along* it they are open. The peer is {whose}: SCoRE and SARA on the same poses, in "
         "the same run. "
         "*With landmarks*: each half solved as a user would solve it. *SCoRE* compares the peer's "

@@ -6,13 +6,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.geometry.centre_views import Turning, View
+from kinesphere.geometry.joint_turns import nearest
 from kinesphere.geometry.medians import column_medians
 from kinesphere.geometry.pose_errors import point_covariance
+from kinesphere.geometry.pose_worth import noise_share
 
 Array = NDArray[np.float64]
 
 NOISE_FLOOR = 1e-6
 """Least scale of the residuals relative to the noise they are expected to have."""
+FEW = 10
+"""Frames below which nothing is said about what averages out."""
 _DIFFERENCE = 1e-6  # m, step of the whitening's derivative, which is nearly a quadratic
 _HALF_NORMAL = {1: 0.6745, 3: 1.538}  # median length of a standard normal vector
 _APART = 1e-9  # m, least distance a direction is taken from
@@ -107,6 +111,23 @@ def soft_weights(size: Array, seen: NDArray[np.bool_] | None, k: int) -> tuple[A
     scale = np.maximum(column_medians(size, seen) / _HALF_NORMAL[k], NOISE_FLOOR)
     w = 1 / np.sqrt(1 + (size / (2 * scale)) ** 2)
     return scale, w if seen is None else np.where(seen, w, 0.0)
+
+
+def averaging_share(view: View, centre: Array) -> float:
+    """Return the share of what markers' distances stray that averages out over frames, 0…1.
+
+    It differs between frames most alike in directions; those know nothing of the distances.
+    Nothing is said to average out where hardly a frame shows all markers.
+    """
+    points, seen, *_ = view.sightings
+    whole = seen.all(axis=1)
+    if not points.shape[1] or whole.sum() < FEW:
+        return 0.0
+    arm = points[whole] - centre
+    towards = arm / np.maximum(np.linalg.norm(arm, axis=2, keepdims=True), _APART)
+    return noise_share(
+        _distances(view, centre).residual[whole, :, 0], nearest(towards.reshape(len(arm), -1))
+    )
 
 
 def find_information(view: View, centre: Array, looks: float) -> Array:

@@ -1,35 +1,29 @@
 """The point two limbs share, by maximum a posteriori, and how well the motion knows it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.geometry.algebraic_centres import sphere_centre
-from kinesphere.geometry.centre_terms import find_information, find_terms
+from kinesphere.geometry.centre_covariance import Told, covariance_of, data_covariance_of
+from kinesphere.geometry.centre_descent import descend, mean_residual
+from kinesphere.geometry.centre_terms import averaging_share, find_information
 from kinesphere.geometry.centre_views import Turning as Turning
 from kinesphere.geometry.centre_views import View as View
-from kinesphere.geometry.joint_turns import main_axis
+from kinesphere.geometry.hinge_expectation import open_axis, tighter_along
 from kinesphere.geometry.medians import column_medians
-from kinesphere.geometry.skin import FEW, fit_through_skin
+from kinesphere.geometry.pose_worth import overrated
+from kinesphere.geometry.skin import fit_through_skin
+from kinesphere.geometry.skin_noise import FEW
 from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
 
 CELL = np.deg2rad(10.0)
 """rad, poses nearer to each other than this count as one: soft tissue errs alike in both."""
-ALIGNED = 0.8
-"""Least cosine between the axis of a hinge and the direction its motion knows least."""
-FIRM = 16.0
-"""Information from the motion, in the expectation's units, above which a hinge is left to it."""
 FAR = 10.0
 """Spreads from the expectation beyond which an algebraic centre is no place to start from."""
-SILENT = 1e-6
-"""Share of the expectation's information left where motion is silent: a thousand spreads."""
-ROUNDING = 1e-15
-"""Share of the largest eigenvalue below which there is nothing but rounding."""
-SETTLED = 1e-6
-"""m, step of the descent that ends it."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +49,7 @@ def fit_centre(
     expected: Array,
     spread: float,
     *,
+    off: float = 1.0,
     hidden: float = 1.0,
     hinge: Array | None = None,
     tighter: float = 10.0,
@@ -83,7 +78,9 @@ def fit_centre(
     expected : (3,) m
         Expected centre in the frame of the seeing limb.
     spread
-        m, its standard deviation.
+        m, how far off it may be: it holds the centre as if that was its standard deviation.
+    off
+        In spreads, how far off it is in each direction: as such it is in the uncertainty.
     hidden
         How many times larger errors are that the fit absorbs (skin that moves with the pose) than
         those it leaves as residuals.
@@ -99,45 +96,55 @@ def fit_centre(
     n_poses = count_poses(view, expected)
     x, algebraic = expected, sphere_centre(view.points, expected)
     if np.linalg.norm(algebraic - expected) < FAR * spread:
-        x = min((expected, algebraic), key=lambda start: _cost(view, start))
-    plain = prior = np.eye(3) / spread**2
+        x = min((expected, algebraic), key=lambda start: mean_residual(view, start))
+    prior = np.eye(3) / spread**2
     if _has_skin(view):
         if hinge is not None:
-            prior = prior + _single(view, expected, tighter) / spread**2
-        x, information = _fit(view, x, expected, prior, hidden, rounds)
+            prior = prior + tighter_along(view, expected, tighter) / spread**2
+        x, told = _fit(view, x, expected, prior, hidden, rounds)
     else:
         # nearly without expectation a centre may flee along the axis: no place to start from
-        loose = _fit(view, x, expected, 0.01 * prior, hidden, rounds)[1]
-        along = None if hinge is None else _open_axis(loose, spread, hinge)
+        loose = _fit(view, x, expected, 0.01 * prior, hidden, rounds)[1].pull
+        along = None if hinge is None else open_axis(loose, spread, hinge)
         if along is not None:
             prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
-        x, information = _fit(view, x, expected, prior, hidden, rounds)
+        x, told = _fit(view, x, expected, prior, hidden, rounds)
         if along is not None:  # what was not asked has told nothing
             across = np.eye(3) - np.outer(along, along)
-            information = across @ information @ across
+            told = Told(*(across @ one @ across for one in told))
     return CentreFit(
         centre=x,
         noise=_robust_noise(view, x),
-        data_covariance=_inverse(information, plain, SILENT),
+        data_covariance=data_covariance_of(told, spread),
         prior=prior,
-        covariance=_inverse(information, plain, 1.0),
+        covariance=covariance_of(told, prior, off, spread),
         n_poses=n_poses,
     )
 
 
 def with_expectation(
-    centre: Array, information: Array, spread: float, noise: float, n_poses: int
+    centre: Array, information: Array, spread: float, noise: float, n_poses: int, over: float = 1.0
 ) -> CentreFit:
-    """Return a centre found in another way, from what the motion told about it, (3, 3) 1/m²."""
-    prior = np.eye(3) / spread**2
+    """Return a centre found in another way, from what the motion told about it, (3, 3) 1/m².
+
+    ``over`` is how many times its variance is what this information says.
+    """
+    prior, told = np.eye(3) / spread**2, Told(information, over * information)
     return CentreFit(
         centre=centre,
         noise=noise,
-        data_covariance=_inverse(information, prior, SILENT),
+        data_covariance=data_covariance_of(told, spread),
         prior=prior,
-        covariance=_inverse(information, prior, 1.0),
+        covariance=covariance_of(told, prior, 1.0, spread),
         n_poses=n_poses,
     )
+
+
+def untold(fit: CentreFit, spread: float) -> CentreFit:
+    """Return a centre of which, for a reason of its own, the motion tells nothing after all."""
+    nothing = data_covariance_of(Told(np.zeros((3, 3)), np.zeros((3, 3))), spread)
+    unsure = fit.covariance + spread**2 * np.eye(3)
+    return replace(fit, data_covariance=nothing, covariance=unsure)
 
 
 def _has_skin(view: View) -> bool:
@@ -146,41 +153,23 @@ def _has_skin(view: View) -> bool:
     return turning is not None and turning.skin is not None and bool(turning.known.sum() >= FEW)
 
 
-def _single(view: View, expected: Array, tighter: float) -> Array:
-    """Return how much tighter a hinge is expected, (3, 3), in the expectation's own units.
-
-    Along the axis it turns about. As far as single rotations stray from that axis, or it points
-    along the limb, what is unsure across it is unsure along it.
-    """
-    assert view.turning is not None
-    axis, strays = main_axis(view.turning)
-    points, seen, *_ = view.sightings
-    arm = (points[seen] - expected).sum(axis=0) if seen.any() else np.zeros(3)
-    pointing = float((axis @ arm) ** 2 / max(arm @ arm, 1e-300))
-    times = 1 / (1 / tighter**2 + strays + pointing)
-    more: Array = max(times - 1, 0.0) * np.outer(axis, axis)
-    return more
-
-
-def _open_axis(information: Array, spread: float, hinge: Array) -> Array | None:
-    """Return the direction in which a hinge's centre is left to its expectation, (3,)."""
-    values, vectors = np.linalg.eigh(information)
-    aligned = abs(vectors[:, 0] @ hinge) > ALIGNED
-    return vectors[:, 0] if aligned and values[0] * spread**2 < FIRM else None
-
-
 def _fit(
     view: View, x: Array, expected: Array, prior: Array, hidden: float, rounds: int
-) -> tuple[Array, Array]:
-    """Return the centre, and what the motion tells about it, (3, 3) 1/m²."""
+) -> tuple[Array, Told]:
+    """Return the centre, and what the motion tells about it."""
     turning, n_poses = view.turning, count_poses(view, expected)
     if _has_skin(view):
         fit = fit_through_skin(view, x, expected, prior, n_poses, hidden=hidden, rounds=rounds)
-        return fit.centre, fit.information
+        return fit.centre, fit.told
     # distances and orientation are two readings of the same sightings
     looks = n_poses / hidden**2 / (1 if turning is None else 2)
-    x = _descend(view, x, expected, prior, looks, rounds)
-    return x, find_information(view, x, looks)
+    x = descend(view, x, expected, prior, looks, rounds)
+    information = find_information(view, x, looks)
+    share = averaging_share(view, x)
+    over = overrated(share, len(view.points), n_poses, hidden)
+    # and no number of poses tells a centre better than what lasts lets it be the same
+    lasts = (1 - share) * _robust_noise(view, x) ** 2
+    return x, Told(information, over * information + lasts * information @ information)
 
 
 def count_poses(view: View, centre: Array) -> int:
@@ -196,20 +185,6 @@ def count_poses(view: View, centre: Array) -> int:
     return most
 
 
-def _inverse(information: Array, prior: Array, share: float) -> Array:
-    """Return the inverse of ``information + share * prior``, (3, 3), however far they differ.
-
-    Motion without noise may know one direction 10¹⁶ times better than another: their sum is
-    singular in rounding, so the prior is made the unit and eigenvalues are inverted one by one.
-    """
-    values, vectors = np.linalg.eigh(prior)
-    root = (vectors / np.sqrt(values)) @ vectors.T
-    told, axes = np.linalg.eigh(root @ information @ root)
-    back = root @ axes
-    inverse: Array = (back / (np.maximum(told, 0.0) + share)) @ back.T
-    return inverse
-
-
 def _robust_noise(view: View, centre: Array) -> float:
     """Return the robust standard deviation in m of the distances that should stay the same."""
     points, seen, _, complete = view.sightings
@@ -218,35 +193,3 @@ def _robust_noise(view: View, centre: Array) -> float:
     distances = lengths(points - centre)
     off = np.abs(distances - column_medians(distances, None if complete else seen))
     return 1.4826 * float(np.median(off[seen]))
-
-
-def _cost(view: View, x: Array) -> float:
-    """Return how badly a start fits: the mean size of the residuals."""
-    off = [
-        np.abs(term.residual if term.seen is None else term.residual[term.seen]).ravel()
-        for term in find_terms(view, x)
-    ]
-    return float(np.mean(np.concatenate(off))) if off else 0.0
-
-
-def _descend(
-    view: View, x: Array, expected: Array, prior: Array, looks: float, rounds: int
-) -> Array:
-    """Iterate Gauss-Newton; weights and scale of the residuals follow the current point."""
-    for _ in range(rounds):
-        hessian, gradient = prior, prior @ (x - expected)
-        for term in find_terms(view, x):
-            scale, w, count = term.scales()
-            share = w * (looks / count / scale**2)
-            jacobian = term.jacobian.reshape(-1, 3)
-            weighed = (term.jacobian * share[..., None, None]).reshape(-1, 3)
-            hessian = hessian + weighed.T @ jacobian
-            gradient = gradient + weighed.T @ term.residual.ravel()
-        values, vectors = np.linalg.eigh(hessian)
-        # without noise one direction may weigh 10¹⁶ times another: rounding must not divide by zero
-        step = -vectors @ (vectors.T @ gradient / np.maximum(values, ROUNDING * values[2]))
-        length = float(np.linalg.norm(step))
-        x = x + step * min(1.0, 0.05 / max(length, 1e-12))
-        if length < SETTLED:
-            break
-    return x

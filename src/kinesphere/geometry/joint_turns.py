@@ -78,8 +78,12 @@ def crowds(rotations: Array) -> Array:
 
 def nearest_poses(rotations: Array) -> NDArray[np.int64]:
     """Return for each pose the index of the one most like it, (n,)."""
-    flat = rotations.reshape(len(rotations), 9)
+    return nearest(rotations.reshape(len(rotations), 9))
+
+
+def nearest(flat: Array) -> NDArray[np.int64]:
+    """Return for each row the index of the one nearest to it, (n, k) → (n,)."""
     two = np.asarray(KDTree(flat).query(flat, k=2)[1])
     itself = two[:, 0] == np.arange(len(flat))
-    nearest: NDArray[np.int64] = np.where(itself, two[:, 1], two[:, 0])
-    return nearest
+    other: NDArray[np.int64] = np.where(itself, two[:, 1], two[:, 0])
+    return other

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.geometry.joint_turns import crowds, joint_turns
+from kinesphere.geometry.joint_turns import joint_turns
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,20 @@ def pose_worth(share: float, crowd: Array, looks: float, hidden: float) -> Array
     return worth
 
 
-def crowding(rotations: Array) -> Array:
+def overrated(share: float, n_frames: int, n_poses: int, hidden: float) -> float:
+    """Return how many times a centre's variance is what looks say that take all strays to last.
+
+    Such looks are as many as poses, each worth 1/``hidden``² of what its residual says.
+
+    Parameters
+    ----------
+    share
+        As `noise_share` returns it.
+    """
+    return share * n_poses / hidden**2 / max(n_frames, n_poses) + 1 - share
+
+
+def crowding(rotations: Array, crowd: Array) -> Array:
     """Return how many frames share what lasts with each pose, where skin is fitted along, (n,).
 
     Where a joint turns far, skin that goes with it is told apart from its centre, and every frame
@@ -64,9 +77,11 @@ def crowding(rotations: Array) -> Array:
     Parameters
     ----------
     rotations : (n, 3, 3)
+    crowd : (n,)
+        As `kinesphere.geometry.joint_turns.crowds` returns it.
     """
     turns = joint_turns(rotations)
     widest = float(np.linalg.eigvalsh(turns.T @ turns / len(turns))[2])
     little = 1 / (1 + (widest / NARROW**2) ** 2)
-    shared: Array = crowds(rotations) ** little
+    shared: Array = crowd**little
     return shared

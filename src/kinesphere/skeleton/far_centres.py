@@ -16,9 +16,10 @@ STRAYED = 3.0
 """Spreads off the middle between two limbs beyond which a centre is at neither: the ends are 2."""
 
 
-TOLD_MM = 10.0
+TOLD_MM = 5.0
 """mm, uncertainty by the motion alone, and noise, up to which it tells a centre well: then it is
-there, however the markers lie. Centres right to 1 mm had up to 4 and 2.3, wrong ones 36 and 15."""
+there, however the markers lie. Centres right to 1 mm had up to 4 and 2.3, wrong ones 36 and 15, of
+uncertainties that were two to three times too large."""
 
 
 class FarCentres(NamedTuple):

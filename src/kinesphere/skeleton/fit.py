@@ -24,7 +24,7 @@ from kinesphere.skeleton.far_centres import far_centres
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.report import describe_joint, describe_limb
-from kinesphere.skeleton.sampling import spread_frames
+from kinesphere.skeleton.sampling import spread_over_joints
 from kinesphere.skeleton.scale import scaled, size_share
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.solve import solve_poses
@@ -76,7 +76,9 @@ def fit_skeleton(
     tree = find_tree(recording, model)
     used = [label for limb in tree.limbs for label in tree.markers[limb]]
     columns = recording.columns(tuple(used))
-    frames = spread_frames(recording.markers, settings.sample_frames, columns)
+    frames = spread_over_joints(
+        recording.markers, settings.sample_frames, tree.joint_columns(recording)
+    )
     asked, share = settings, size_share(recording.markers[frames][:, columns])
     settings = scaled(asked, share)
     markers = {label: recording.markers[:, i] for i, label in enumerate(recording.labels)}

@@ -18,6 +18,9 @@ far as the markers themselves, for a foot's lie all but at the ankle."""
 NO_LANDMARK_FIRM = 0.25
 """The same where there is little else that tells: of a joint with one axis (knees and elbows lie
 about midway), and where a limb has too few markers for a pose of its own."""
+MIDWAY_OFF = 3**-0.5
+"""Spreads in each direction by which it is off, for the share is of how far off it is in all; but
+of limbs with few markers it is as wrong as in each direction."""
 OWN_POSE = 3
 """Markers that give a pose."""
 
@@ -48,10 +51,19 @@ def expected_centre(
     own = np.nan_to_num(mean_seen(parent.shape))
     if not np.isfinite(child).all():
         child = own
-    few = min(len(parent.labels), len(child_labels)) < OWN_POSE
+    few = _few(parent, child_labels)
     share = NO_LANDMARK_FIRM if joint.n_axes == 1 or few else NO_LANDMARK_SHARE
     spread = max(share * float(np.linalg.norm(child - own)), 0.02)
     return (child + own) / 2, spread, BETWEEN
+
+
+def expected_off(source: str, parent: Body, child_labels: tuple[str, ...]) -> float:
+    """Return how far off an expectation is in each direction, in its spreads."""
+    return MIDWAY_OFF if source == BETWEEN and not _few(parent, child_labels) else 1.0
+
+
+def _few(parent: Body, child_labels: tuple[str, ...]) -> bool:
+    return min(len(parent.labels), len(child_labels)) < OWN_POSE
 
 
 def _landmark(

@@ -5,17 +5,21 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.data import Array, JointModel
-from kinesphere.geometry.centres import Turning, View, fit_centre
+from kinesphere.geometry.centres import Turning, View, fit_centre, untold
 from kinesphere.geometry.joint_turns import joint_modes
 from kinesphere.geometry.pose_errors import pose_covariance
 from kinesphere.geometry.rigid import RigidFit, into_frame
-from kinesphere.geometry.skin import skin_noise
+from kinesphere.geometry.skin_noise import skin_noise
 from kinesphere.skeleton.body import NOISE, Body, measure_shape
-from kinesphere.skeleton.landmarks import expected_centre
+from kinesphere.skeleton.landmarks import expected_centre, expected_off
 from kinesphere.skeleton.linked_joint import LinkedJoint
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.settings import SkeletonSettings
+
+STRAYS = 0.75
+"""Share of `SkeletonSettings.undetermined_mm` that a limb's markers may stray in each direction on
+average: skin of 20 mm a radian leaves 3 mm, real trunks 11, two limbs taken for one 20."""
 
 
 class FoundJoint(NamedTuple):
@@ -65,10 +69,14 @@ def find_joint(
             view,
             expected,
             spread,
+            off=expected_off(source, parent, labels),
             hidden=settings.soft_tissue,
             hinge=parent.right if joint.n_axes == 1 else None,
             tighter=settings.hinge,
         )
+    strays = max(float(np.mean(one)) for one in (parent.noise, noise))
+    if strays > STRAYS * settings.undetermined_mm * 1e-3:
+        fit = untold(fit, spread)  # what is no body has no joint that its motion could tell
     return FoundJoint(MeasuredJoint(joint, fit, expected, spread, source), own, noise, solid)
 
 

@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.data import Array, Mask
-from kinesphere.geometry.linkage import Linkage
+from kinesphere.geometry.joint_turns import nearest
+from kinesphere.geometry.linkage import Linkage, misfit
 from kinesphere.geometry.linkage_fit import LinkageFit, fit_linkage
+from kinesphere.geometry.pose_worth import noise_share, overrated
 from kinesphere.geometry.range_of_motion import range_of_motion
 from kinesphere.geometry.vectors import is_seen, lengths
 from kinesphere.skeleton.averages import mean_seen, median_seen
@@ -133,7 +135,17 @@ def fit_group(
     near = off < STRAYED * np.array([j.spread for j in measured])  # not so where it is not finite
     told = np.linalg.eigvalsh(fit.information[1:])[:, 1]
     firm = told >= 1 / (settings.undetermined_mm * 1e-3) ** 2
-    return GroupFit(_joints(group, fit, known, n_poses), not near.all(), bool(firm.all()))
+    share = _averaging_share(fit.linkage, points)
+    over = [overrated(share, len(points), n, settings.soft_tissue) for n in n_poses]
+    return GroupFit(_joints(group, fit, known, n_poses, over), not near.all(), bool(firm.all()))
+
+
+def _averaging_share(linkage: Linkage, points: Array) -> float:
+    """Return the share of the markers' strays that averages out over frames, 0…1."""
+    off = misfit(linkage, points, is_seen(points))[0]
+    first, others = linkage.rotations[:, :1], linkage.rotations[:, 1:]
+    turns = np.swapaxes(first, 2, 3) @ others
+    return noise_share(off.reshape(len(off), -1), nearest(turns.reshape(len(turns), -1)))
 
 
 def _starts(
@@ -174,7 +186,7 @@ def _moved(rotations: Array, parent: int, child: int) -> float:
 
 
 def _joints(
-    group: tuple[str, ...], fit: LinkageFit, known: Mask, n_poses: list[int]
+    group: tuple[str, ...], fit: LinkageFit, known: Mask, n_poses: list[int], over: list[float]
 ) -> dict[str, LinkedJoint]:
     linked = {}
     origins = fit.linkage.origins
@@ -183,5 +195,7 @@ def _joints(
         frames = np.full((len(known), 3, 3), np.nan)
         world[known] = origins[:, i]
         frames[known] = fit.linkage.rotations[:, fit.linkage.parents[i]]
-        linked[limb] = LinkedJoint(world, frames, fit.information[i], fit.scale, n_poses[i - 1])
+        linked[limb] = LinkedJoint(
+            world, frames, fit.information[i], over[i - 1], fit.scale, n_poses[i - 1]
+        )
     return linked

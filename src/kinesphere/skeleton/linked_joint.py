@@ -21,7 +21,9 @@ class LinkedJoint(NamedTuple):
     frames: Array
     """(n_sample, 3, 3) the parent's poses as the group has them; NaN alike."""
     information: Array
-    """(3, 3) 1/m² in the parent as the group has it."""
+    """(3, 3) 1/m² in the parent as the group has it, by weights as careful as skin asks for."""
+    over: float
+    """How many times the centre's variance is what these weights say."""
     noise: float
     """m."""
     n_poses: int
@@ -40,4 +42,5 @@ class LinkedJoint(NamedTuple):
             spread,
             self.noise,
             self.n_poses,
+            self.over,
         )

@@ -1,15 +1,22 @@
 """Which frames to measure on: as many poses, and as different ones, as the time allows."""
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array
+from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.vectors import is_seen
 
 JUMP = 0.05
 """m, most a marker's step between frames counts: a ghost's jump is no motion."""
+
+SOME = 3
+"""Markers of a limb that tell what its joint does."""
+TINY = 1e-3
+"""m, way of a joint that does nothing but round."""
 
 BLOCK = 16384
 """Frames looked at at a time."""
@@ -45,6 +52,49 @@ def spread_frames(
         block = markers[start : start + BLOCK + 1]
         block = block if columns is None else block[:, columns]
         steps[start + 1 : start + len(block)] = _step_lengths(block)
+    return _spread_over(steps, count)
+
+
+def spread_over_joints(
+    markers: Array, count: int, joints: Sequence[tuple[Sequence[int], Sequence[int]]]
+) -> NDArray[np.intp]:
+    """Return frames half of which are spread evenly over time, half over what joints do.
+
+    Each joint has an equal share of the second half, over the way of the distances between the two
+    limbs' markers: an ankle moves them by centimetres, a hip by a metre. Time keeps what the
+    many other joints do meanwhile, which skin follows, as long as it lasts.
+
+    Parameters
+    ----------
+    markers : (n_frames, n_markers, 3) m
+        NaN where not seen: such steps count as none.
+    count
+        Most frames to return.
+    joints
+        Of each, the columns of the markers of either limb.
+
+    Returns
+    -------
+    (n,) increasing frame indices, all of them where there are no more than ``count``.
+    """
+    n_frames = len(markers)
+    if n_frames <= count:
+        return np.arange(n_frames)
+    steps = np.zeros(n_frames)
+    for one, other in joints:
+        ways = np.zeros(n_frames)
+        for a, b in product(one[:SOME], other[:SOME]):
+            off = markers[:, a] - markers[:, b]
+            step = np.abs(np.diff(np.sqrt(np.einsum("ni,ni->n", off, off))))
+            ways[1:] += np.minimum(np.where(np.isfinite(step), step, 0.0), JUMP)
+        steps += ways / max(float(ways.sum()), TINY)
+    half = count // 2
+    return np.union1d(_spread_over(steps, count - half), even_frames(n_frames, half))
+
+
+def _spread_over(steps: Array, count: int) -> NDArray[np.intp]:
+    """Return frames spread evenly over a way of so many steps, the first of which is none."""
+    n_frames = len(steps)
     way = np.cumsum(steps)
     # a little of plain time keeps a recording without motion evenly sampled
     way += np.linspace(0.0, 0.05 * way[-1] + 1e-9, n_frames)

@@ -11,8 +11,8 @@ class SkeletonSettings:
 
     sample_frames: int = setting(
         600,
-        "frames that shapes and joint centres are measured on, spread evenly over the way the "
-        "markers travel",
+        "frames that shapes and joint centres are measured on, half spread evenly over time, half "
+        "over what the joints do",
         low=10,
         high=100_000,
         source="more frames change joint centres by less than their uncertainty",

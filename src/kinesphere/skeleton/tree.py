@@ -31,6 +31,11 @@ class Tree:
         """Return the limbs that hang from a limb."""
         return tuple(joint.child for joint in self.joints if joint.parent == limb)
 
+    def joint_columns(self, recording: Recording) -> list[tuple[list[int], list[int]]]:
+        """Return of each joint the columns of the markers of either limb."""
+        own = {limb: list(recording.columns(labels)) for limb, labels in self.markers.items()}
+        return [(own[joint.parent], own[joint.child]) for joint in self.joints]
+
 
 def find_tree(recording: Recording, model: TopologicalModel) -> Tree:
     """Return the limbs of the model that the recording shows.

@@ -1,0 +1,170 @@
+"""What is told of joint centres: errors beside the uncertainty that is given with them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.geometry.rigid import into_frame
+from kinesphere.skeleton import fit_skeleton
+from kinesphere.synthetic import (
+    Performance,
+    make_performance,
+    spoil_with_noise,
+    spoil_with_soft_tissue,
+)
+
+Array = NDArray[np.float64]
+
+SEEDS = range(1000, 1008)
+"""Actors; the formula was settled on others (800 to 805)."""
+KINDS = ("ankle", "knee", "hip", "neck", "shoulder", "elbow")
+STEP = 5
+"""Every so many frames are compared."""
+EXACT_MM = 1e-3
+"""Uncertainty below which there is nothing but rounding."""
+SKIN_NOISE = 3e-4
+"""m, noise of markers on skin."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """How a recording is made and spoilt."""
+
+    name: str
+    noise: float = 1e-3
+    """m."""
+    skin: float = 0.0
+    """m a radian; wobble is a fifth of it."""
+    wobble: float | None = None
+    """m, where it is not."""
+    calibration_s: float = 60.0
+    free_s: float = 10.0
+    first_s: float | None = None
+    """Only the first seconds of it: most joints hardly move in them."""
+    sparse: bool = False
+    """41 markers, two on thighs and upper arms."""
+
+
+CONDITIONS = (
+    Condition("no noise", noise=0.0),
+    Condition("0.1 mm noise", noise=1e-4),
+    Condition("1 mm noise"),
+    Condition("3 mm noise", noise=3e-3),
+    Condition("1 mm noise, 20 s free", calibration_s=0, free_s=20),
+    Condition("1 mm noise, 12 s free", calibration_s=0, free_s=12),
+    Condition("1 mm noise, 3 s free", calibration_s=0, free_s=3),
+    Condition("1 mm noise, most joints at rest", first_s=20),
+    Condition("skin 5 mm/rad", SKIN_NOISE, 0.005),
+    Condition("skin 10 mm/rad", SKIN_NOISE, 0.010),
+    Condition("skin 20 mm/rad", SKIN_NOISE, 0.020),
+    Condition("skin 10 mm/rad, 20 s free", SKIN_NOISE, 0.010, calibration_s=0, free_s=20),
+    Condition("skin 10 mm/rad, 12 s free", SKIN_NOISE, 0.010, calibration_s=0, free_s=12),
+    Condition("skin 10 mm/rad, most joints at rest", SKIN_NOISE, 0.010, first_s=20),
+    Condition("wobble 4 mm, 20 s free", SKIN_NOISE, wobble=0.004, calibration_s=0, free_s=20),
+    Condition("41 markers, 1 mm noise", sparse=True),
+    Condition("41 markers, skin 10 mm/rad", SKIN_NOISE, 0.010, sparse=True),
+    Condition(
+        "41 markers, skin 10 mm/rad, 12 s free",
+        *(SKIN_NOISE, 0.010),
+        calibration_s=0,
+        free_s=12,
+        sparse=True,
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Told:
+    """One joint of one actor; of hinges across their axis, and along it."""
+
+    condition: str
+    actor: int
+    joint: str
+    error_mm: float
+    """That stays the same over time, in the parent's frame."""
+    told_mm: float
+    """Rms length of it by the covariance."""
+    along_mm: float
+    """NaN where the joint is no hinge."""
+    told_along_mm: float
+    observability: str
+
+
+def told_rows() -> list[Told]:
+    """Return a row a joint of every actor in every condition."""
+    return [row for one in CONDITIONS for seed in SEEDS for row in rows_of(one, seed)]
+
+
+def rows_of(condition: Condition, seed: int) -> list[Told]:
+    """Return a row a joint."""
+    performance = make_performance(
+        np.random.default_rng(seed),
+        layout="cmu41" if condition.sparse else "bodies",
+        calibration_s=condition.calibration_s,
+        free_s=condition.free_s,
+    )
+    rng = np.random.default_rng([seed, 3])
+    recording = performance.recording
+    wobble = condition.skin / 5 if condition.wobble is None else condition.wobble
+    if condition.skin or wobble:
+        recording = spoil_with_soft_tissue(
+            recording, rng, performance, per_radian=condition.skin, wobble=wobble
+        )
+    if condition.noise:
+        recording = spoil_with_noise(recording, rng, deviation=condition.noise)
+    shown = slice(None)
+    if condition.first_s is not None:
+        shown = slice(round(condition.first_s * recording.rate))
+        recording = replace(recording, markers=recording.markers[shown], residuals=None)
+    joints = tuple(replace(joint, landmarks=()) for joint in performance.model.joints)
+    motion = fit_skeleton(recording, replace(performance.model, joints=joints))
+    rows = []
+    for joint in motion.skeleton.joints:
+        parent = motion.skeleton.limb_names.index(joint.parent)
+        rotations, origins = motion.rotations[::STEP, parent], motion.origins[::STEP, parent]
+        centres, axes = (x[shown][::STEP] for x in _truth(performance, joint.name))
+        true = np.nanmean(into_frame(rotations, origins, centres[:, None])[:, 0], axis=0)
+        seen = np.einsum("nji,nj->ni", rotations, axes).mean(axis=0)
+        off, axis = joint.centre_in_parent - true, seen / np.linalg.norm(seen)
+        hinge = bool(np.isfinite(axis).all())
+        across = np.eye(3) - np.outer(axis, axis) if hinge else np.eye(3)
+        rows.append(
+            Told(
+                condition.name,
+                seed,
+                joint.name,
+                1e3 * float(np.linalg.norm(across @ off)),
+                1e3 * float(np.sqrt(np.trace(across @ joint.covariance @ across))),
+                1e3 * abs(float(axis @ off)),
+                1e3 * float(np.sqrt(axis @ joint.covariance @ axis)),
+                joint.observability,
+            )
+        )
+    return rows
+
+
+def _truth(performance: Performance, name: str) -> tuple[Array, Array]:
+    """Return a joint's centre and, of a hinge, its axis in the world, (n, 3) each; else NaN."""
+    skeleton = performance.skeleton
+    at = list(skeleton.joint_names).index(name)
+    joint = skeleton.joints[at]
+    one = joint.axes is not None and len(joint.axes) == 1
+    axis = joint.axes[0] if one and joint.axes is not None else np.full(3, np.nan)
+    parent = skeleton.limb_names.index(joint.parent)
+    return performance.joint_centres[:, at], performance.motion.rotations[:, parent] @ axis
+
+
+def told_ratio(rows: Sequence[Mapping[str, Any]]) -> float:
+    """Return the rms of errors over what is told of them; NaN where nothing but rounding is."""
+    kept = [row for row in rows if row["told_mm"] > EXACT_MM]
+    ratios = [row["error_mm"] / row["told_mm"] for row in kept]
+    return float(np.sqrt(np.mean(np.square(ratios)))) if ratios else float("nan")
+
+
+def of_conditions(rows: Sequence[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+    """Return the rows of each condition, in their order."""
+    names = dict.fromkeys(row["condition"] for row in rows)
+    return {name: [row for row in rows if row["condition"] == name] for name in names}
