@@ -8,8 +8,10 @@ import pytest
 from kinesphere.skeleton import discover
 from kinesphere.skeleton.discovery.figure import Figure
 from kinesphere.skeleton.discovery.forest import Edge, Forest
-from kinesphere.skeleton.discovery.names import Names, _torso, shaken
-from kinesphere.skeleton.discovery.person import LIKELY, SHARPNESS, STATURE, Person
+from kinesphere.skeleton.discovery.likeliest import SHARPNESS
+from kinesphere.skeleton.discovery.names import Names, _torso
+from kinesphere.skeleton.discovery.person import LIKELY, STATURE, Person
+from kinesphere.skeleton.discovery.trust import shaken
 from kinesphere.synthetic import HAND, make_performance, spoil_with_noise
 
 LIMBS = {0: "trunk", 1: "head", 2: "limb_01", 3: "limb_02"}
@@ -86,13 +88,13 @@ def test_a_hand_of_a_person_s_proportions_is_no_person():
 
 def test_nobody_is_a_reading_too(monkeypatch):
     """A cost at the limit leaves even odds, however bad every other reading is."""
-    from kinesphere.skeleton.discovery import person as module
+    from kinesphere.skeleton.discovery import likeliest as module
 
     only = Person(0, None, ((1, 2), (3, 4)), (), None, lengths=10, stature=STATURE)
-    monkeypatch.setattr(module, "_readings", lambda *_: iter([only]))
+    monkeypatch.setattr(module, "readings", lambda *_: iter([only]))
     for margin in (0.0, 2.0, 10.0):
         cost = LIKELY * 10 - margin
-        monkeypatch.setattr(module, "_judged", lambda _f, p, _n, cost=cost: replace(p, cost=cost))
+        monkeypatch.setattr(module, "judged", lambda _f, p, _n, cost=cost: replace(p, cost=cost))
         _, sure = module.find_person(None, (0, 1, 2, 3, 4))
         assert sure == pytest.approx(1 / (1 + np.exp(-margin / SHARPNESS)))
 
@@ -100,10 +102,10 @@ def test_nobody_is_a_reading_too(monkeypatch):
 @pytest.fixture
 def read_as(monkeypatch):
     """Return costs of a leg pair on a trunk with arms, as a function of other bodies' places."""
-    from kinesphere.skeleton.discovery import person as module
+    from kinesphere.skeleton.discovery import proportions as module
 
     monkeypatch.setattr(Figure, "length", lambda *_: 0.4)
-    monkeypatch.setattr(module, "_off", lambda *_: 0.0)
+    monkeypatch.setattr(module, "off", lambda *_: 0.0)
 
     def cost(*extra, arms=2, feet=True, head=True):
         """``extra`` bodies hang from the body given; the trunk is 0."""
@@ -124,7 +126,7 @@ def read_as(monkeypatch):
         reading = Person(
             0, None, legs, tuple([(0, (7, 8)), (0, (9, 10))][:arms]), 11 if head else None
         )
-        return module._judged(figure, reading, len(bodies)).cost
+        return module.judged(figure, reading, len(bodies)).cost
 
     return cost
 

@@ -7,9 +7,10 @@ import numpy as np
 from kinesphere.data import Array, Json, TopologicalModel
 from kinesphere.skeleton.discovery.clustering import merge_curve
 from kinesphere.skeleton.discovery.forest import Edge
-from kinesphere.skeleton.discovery.names import DOUBTFUL_COUNT, Names
+from kinesphere.skeleton.discovery.names import Names
 from kinesphere.skeleton.discovery.partition import Partition
 from kinesphere.skeleton.discovery.steadiness import owners
+from kinesphere.skeleton.discovery.trust import DOUBTFUL_COUNT
 
 CURVE = 30
 """Most bodies in the merge curve."""

@@ -15,7 +15,7 @@ from kinesphere.errors import BadRecording, DegenerateMotion
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
 from kinesphere.skeleton.discovery.forest import Forest, rerooted
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
-from kinesphere.skeleton.discovery.names import settled, shaken
+from kinesphere.skeleton.discovery.names import settled
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
 from kinesphere.skeleton.discovery.rigidity import trimmed_share, worth_grouping
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
@@ -24,6 +24,7 @@ from kinesphere.skeleton.discovery.spikes import without_spikes
 from kinesphere.skeleton.discovery.steadiness import OWN_POSE
 from kinesphere.skeleton.discovery.tree_model import tree_model
 from kinesphere.skeleton.discovery.tree_names import named_tree
+from kinesphere.skeleton.discovery.trust import shaken
 from kinesphere.skeleton.discovery.twigs import TORSO, without_twigs
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.settings import SkeletonSettings
