@@ -1,6 +1,6 @@
 """Trees of bodies: which meet, how sure each joint is, and what hangs from what."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -67,6 +67,11 @@ class Forest:
         """Return the bodies that meet this one."""
         parent = self.parent(body)
         return self.children(body) if parent is None else [parent, *self.children(body)]
+
+    def amid(self, tree: Sequence[int]) -> list[int]:
+        """Return the bodies of a tree, the nearest to all its markers first."""
+        edges = [pair_of(edge) for edge in self.edges]
+        return sorted(tree, key=_ways_to_all(edges, self.sizes))
 
     def edge(self, child: int) -> Edge:
         """Return the edge towards a body's parent."""
@@ -143,12 +148,19 @@ def _root(tree: Sequence[int], edges: Sequence[Pair], sizes: Sequence[int]) -> i
     Closeness centrality, weighed by markers: a torso rather than the middle of a long chain.
     """
     able = [body for body in tree if sizes[body] > 2] or list(tree)
+    return min(able, key=_ways_to_all(edges, sizes))
+
+
+def _ways_to_all(
+    edges: Sequence[Pair], sizes: Sequence[int]
+) -> Callable[[int], tuple[int, int, int]]:
+    """Return what tells how near a body is to all markers of its tree."""
 
     def way_to_all(body: int) -> tuple[int, int, int]:
         away = _reached(body, edges, len(sizes))
         return sum(sizes[b] * way for b, way in away.items()), -sizes[body], body
 
-    return min(able, key=way_to_all)
+    return way_to_all
 
 
 def rerooted(forest: Forest, root: int) -> Forest:
