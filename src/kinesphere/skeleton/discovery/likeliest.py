@@ -32,8 +32,7 @@ def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | N
         return None
     costed.sort(key=lambda person: person.cost)
     best = costed[0]
-    mine = best.limbs
-    rival = next((p.cost for p in costed[1:] if _contradicts(p.limbs, mine)), np.inf)
+    rival = next((p.cost for p in costed[1:] if _contradicts(p, best)), np.inf)
     return best, confidence_of(best.cost, min(rival, best.nobody))
 
 
@@ -42,5 +41,9 @@ def confidence_of(cost: float, rival: float) -> float:
     return float(1 / (1 + np.exp(-(rival - cost) / SHARPNESS)))
 
 
-def _contradicts(kinds: dict[int, str], others: dict[int, str]) -> bool:
-    return any(others.get(body, kind) != kind for body, kind in kinds.items())
+def _contradicts(one: Person, best: Person) -> bool:
+    """Return whether a body is another limb in the two, or another body the head."""
+    others = best.limbs
+    if None not in (one.head, best.head) and one.head != best.head:
+        return True
+    return any(others.get(body, kind) != kind for body, kind in one.limbs.items())

@@ -36,6 +36,8 @@ class Names:
     """Why there are no names, or not all; for a person."""
     cost: float = np.inf
     """Of the likeliest reading as a person, convincing or not; infinite where there is none."""
+    unnamed: frozenset[int] = frozenset()
+    """Bodies that are a person's limbs, though not told which."""
     refused: str = ""
     """Why these names are not given after all: the reading is good, the size is not a person's."""
 
@@ -80,7 +82,10 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     given = _torso(person)
     if sides is None:
         doubt = "nothing tells left from right; arms and legs are numbered"
-        return Names(numbered(given, tree), confidence, account, doubt, person.cost, refused)
+        unnamed = frozenset(person.limbs.keys() - given.keys())
+        return Names(
+            numbered(given, tree), confidence, account, doubt, person.cost, unnamed, refused
+        )
     account |= {"sides_confidence": round(sides.confidence, 3)}
     account |= {f"sides_from_{name}": round(score, 2) for name, score in sides.scores.items()}
     lone = {
@@ -92,7 +97,8 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     given |= {body: limb for body, limb in sided.items() if lone.get(body, "plain")}
     sure = confidence * sides.confidence
     doubt = _whole_arms([sided[body] for body, kind in lone.items() if kind == "whole"])
-    return Names(numbered(given, tree), sure, account, doubt, person.cost, refused)
+    unnamed = frozenset(person.limbs.keys() - given.keys())
+    return Names(numbered(given, tree), sure, account, doubt, person.cost, unnamed, refused)
 
 
 def settled(names: Names, tree: Sequence[int]) -> Names:

@@ -23,6 +23,9 @@ arm: whole arms of a person had 0.30 to 0.35 of stature, half of one with the ha
 MISSING = 4.0
 """Cost of a foot, a forearm, an arm or the head that is not there, or not by itself: as much as two
 standard deviations."""
+HEADS, ABOVE = 0.2, 4.0
+"""Standard deviation of the logarithm of a head's distance, and what it costs if another body on
+the trunk is as far as heads are and farther than this one: what lies between is the trunk's."""
 EXTRA = 2.0
 """Cost of a body between trunk and upper arm: a shoulder blade of its own."""
 HELD, UNEXPLAINED = 2.0, 6.0
@@ -73,7 +76,8 @@ def judged(figure: Figure, person: Person, n_bodies: int) -> Person:
         offs.append(off(figure.length(hips, shoulders), TRUNK * stature, 0.25))
     if person.head is not None:
         head = ("body", person.head)
-        offs.append(off(figure.length(hips, head), HEAD * stature, 0.2))
+        offs.append(off(figure.length(hips, head), HEAD * stature, HEADS))
+        missing += ABOVE * _rather_the_head(figure, person, hips, stature)
     missing += MISSING * (2 - len(arms)) + MISSING * (person.head is None)
     blades = sum(at != person.trunk for at, _ in person.arms)
     held = _held(figure, person)
@@ -112,6 +116,14 @@ def kind_of_lone_arm(figure: Figure, at: int, body: int, stature: float) -> str:
     length = figure.length(*figure.ends(at, (body,))) * figure.unit
     offs = {kind: off(length, share * stature, LONE_ARM) for kind, share in LONE_ARMS.items()}
     return next((kind for kind, how in offs.items() if abs(how) < PLAIN_LENGTH), "")
+
+
+def _rather_the_head(figure: Figure, person: Person, hips: Point, stature: float) -> bool:
+    """Return whether a body that is no limb is rather the head: farther from the hips."""
+    taken = {*person.limbs, *(at for at, _ in person.arms)}
+    ways = [figure.length(hips, ("body", b)) for b in figure.beside[person.trunk] if b not in taken]
+    farthest = max((w for w in ways if abs(off(w, HEAD * stature, HEADS)) < 2), default=0.0)
+    return farthest > figure.length(hips, ("body", person.head))
 
 
 def _lone_arm(figure: Figure, arm: list[Point], hips: Point, stature: float) -> list[float]:
