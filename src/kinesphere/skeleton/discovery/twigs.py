@@ -10,6 +10,9 @@ from kinesphere.skeleton.discovery.partition import Partition, merged
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.settings import SkeletonSettings
 
+SURELY = 1.5
+"""Times the ratio from which a body falls in two up to which what is no limb is the torso's: a person
+has none there. Pieces of trunks had 0.4 to 1.03 of that ratio, heads 2.5."""
 TORSO = ("pelvis", "trunk")
 """What a person's tree hangs from, the first that is there."""
 
@@ -48,7 +51,7 @@ def without_twigs(
         torso = partition.bodies[parent]
         steady = max(partition.usual, widest(wander, torso), widest(wander, partition.bodies[body]))
         both = np.concatenate([torso, partition.bodies[body]])
-        if widest(wander, both) <= settings.split_ratio * steady:
+        if widest(wander, both) <= SURELY * settings.split_ratio * steady:
             partition = merged(partition, parent, body, settings, limits)
             kept = tuple(other for other in kept if other != body)
     given = {b: names.limbs[b] for b in kept if not names.limbs[b].startswith("limb_")}
