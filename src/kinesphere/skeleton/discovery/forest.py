@@ -7,9 +7,8 @@ import numpy as np
 
 DOUBTFUL = 0.15
 """Confidence of an edge below which another one is about as likely."""
-TOLD = 0.3
-"""Confidence of an edge below which it is said that the joint may be wrong: of joints in parts of
-recordings a third is wrong below .2, a sixth from .2 to .3, one in twenty above."""
+UNSURE = 0.3
+"""Confidence of an edge below which the joint is not relied upon where limbs are measured."""
 FAR_APART = 0.007
 """m, cost from which that is said of a joint without any rival: of such joints that cost less,
 one in twenty-five is wrong, of those that cost more one in six."""
@@ -38,9 +37,13 @@ class Edge:
 
     @property
     def doubtful(self) -> bool:
-        """Whether a person should be told that this joint may be wrong."""
+        """Whether this joint is not to be relied upon."""
+        return self.below(UNSURE)
+
+    def below(self, limit: float) -> bool:
+        """Return whether the joint is less sure, or has no rival and hardly fits."""
         alone = not np.isfinite(self.next_best)
-        return self.cost > FAR_APART if alone else self.confidence < TOLD
+        return self.cost > FAR_APART if alone else self.confidence < limit
 
 
 @dataclass(frozen=True)

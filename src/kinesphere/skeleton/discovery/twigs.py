@@ -11,8 +11,8 @@ from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.settings import SkeletonSettings
 
 SURELY = 1.5
-"""Times the ratio from which a body falls in two up to which what is no limb is the torso's: a person
-has none there. Pieces of trunks had 0.4 to 1.03 of that ratio, heads 2.5."""
+"""Times the ratio from which a body falls in two up to which what is no limb is the torso's: a
+person has none there. Pieces of trunks had 0.4 to 1.03 of that ratio, heads 2.5."""
 TORSO = ("pelvis", "trunk")
 """What a person's tree hangs from, the first that is there."""
 
