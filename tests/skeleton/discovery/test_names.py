@@ -1,6 +1,7 @@
 """When a tree is called a person, and how sure its names are."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -152,3 +153,25 @@ def test_what_legs_hang_from_is_the_pelvis_where_nothing_is_above_it():
     assert _torso(Person(0, None, legs, (), None)) == {0: "pelvis"}
     assert _torso(Person(0, None, legs, ((0, (7, 8)),), None)) == {0: "trunk"}
     assert _torso(Person(0, None, legs, (), 7)) == {0: "trunk", 7: "head"}
+
+
+@pytest.mark.parametrize(
+    ("other", "rather"), [(0.40, False), (0.48, True), (0.70, False)]
+)  # of stature; heads are at .42, a thing held high is no head
+def test_what_is_farther_from_the_hips_as_heads_are_is_rather_the_head(other, rather):
+    from kinesphere.skeleton.discovery.proportions import _rather_the_head
+
+    ways = {11: 0.41, 12: other}
+    figure = SimpleNamespace(beside=((1, 3, 11, 12),), length=lambda _, b: ways[b[1]])
+    person = Person(0, None, ((1, 2), (3, 4)), (), 11)
+    assert _rather_the_head(figure, person, ("joint", 0, 1), 1.0) is rather
+
+
+def test_another_head_contradicts():
+    from kinesphere.skeleton.discovery.likeliest import _contradicts
+
+    legs = ((1, 2), (3, 4))
+    one, other, none = (Person(0, None, legs, (), head) for head in (11, 12, None))
+    assert _contradicts(other, one)
+    assert not _contradicts(none, one)
+    assert not _contradicts(one, one)
