@@ -317,7 +317,7 @@ def test_two_markers_and_bodies_of_two_are_refused(recorded, rng):
     ends[:, 1] = ends[:, 0] + 0.2 * stick / np.linalg.norm(stick, axis=1, keepdims=True)
     stick = ends[:, 3] - ends[:, 2]
     ends[:, 3] = ends[:, 2] + 0.3 * stick / np.linalg.norm(stick, axis=1, keepdims=True)
-    with pytest.raises(DegenerateMotion, match="three markers that a root needs"):
+    with pytest.raises(DegenerateMotion, match="three markers off a line that a root needs"):
         discover(Recording(ends, tuple("abcd"), 50.0))
 
 
