@@ -41,3 +41,25 @@ def test_pairs_wander_less_than_one_and_a_half_times_what_bodies_do(between, sti
         usual=0.0005,
     )
     assert still_pairs(partition) == ({(1, 0)} if still else set())
+
+
+def test_limbs_of_two_markers_taken_together_are_told():
+    performance = make_performance(np.random.default_rng(1), n_frames=4000)
+    recording = spoil_with_noise(performance.recording, np.random.default_rng(1), deviation=0.001)
+    kept: list[int] = []
+    for limb in performance.skeleton.limbs:
+        few = limb.markers if limb.name == "trunk" else limb.markers[:2]
+        kept += [recording.labels.index(label) for label in few]
+    found = discover(
+        replace(
+            recording,
+            markers=np.ascontiguousarray(recording.markers[:, kept]),
+            labels=tuple(recording.labels[c] for c in kept),
+        )
+    )
+    assert len(found.model.segments) < len(performance.skeleton.limbs)
+    (told,) = (doubt for doubt in found.step.warnings if "markers move apart within" in doubt)
+    within = found.step.findings["bodies"]
+    assert {limb for limb in within if limb in told} == {
+        limb for limb, body in within.items() if body["within_mm"] > 20
+    }

@@ -18,6 +18,9 @@ CURVE = 30
 """Most bodies in the merge curve."""
 DOUBTFUL_MARKER = 0.5
 """Confidence below which a marker is steadier in the next body than in its own."""
+UNSTEADY = 0.02
+"""m, wander within a body from which it is doubted that it is one: people in soft clothes have up
+to 0.017, limbs of two markers each that were taken together 0.03 to 0.04."""
 
 
 def account_of(
@@ -128,6 +131,16 @@ def doubts_about(
         doubts.append(
             f"{_count(partition)} bodies were found, but their number hardly stands out "
             f"(confidence {sure:.2f}); set discovery.bodies where it is known"
+        )
+    unsteady = [
+        limb
+        for body, limb in limb_of.items()
+        if _rms(partition.belonging.own[partition.bodies[body]]) > UNSTEADY
+    ]
+    if unsteady:
+        doubts.append(
+            f"markers move apart within {', '.join(unsteady)}: each may be several bodies of too "
+            "few markers, and the number of bodies is in doubt"
         )
     edges = [(j.name, _edge(partition, j.parent, j.child, limb_of)) for j in model.joints]
     apart = still_pairs(partition)
