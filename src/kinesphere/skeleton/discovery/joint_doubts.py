@@ -9,8 +9,8 @@ from kinesphere.skeleton.discovery.forest import Edge
 TOLD = {0.6: 0.1, 0.0: 0.3}
 TOLD_UNNAMED = 0.45
 """Confidence of an edge below which it is said that the joint may be wrong: by the least confidence
-of the limbs' names, and where none are given. Of joints in parts of recordings one of 103 is wrong
-below .3 where a person is seen; elsewhere a quarter below .3, one in twelve from there to .45."""
+of the limbs' names, and where none are given. Of joints in parts of recordings one of 97 is wrong
+below .3 where a person is seen; elsewhere a fifth below .3, one in eleven from there to .45."""
 
 
 def is_told(edge: Edge, named: float) -> bool:

@@ -10,7 +10,7 @@ from kinesphere.skeleton.discovery.partition import Partition
 STILL = 1.5
 """Times the wander of distances within two bodies up to which those between them tell nothing: in
 the first 30 s of animals and hands, most of whose joints have not moved yet, 2 to 10 joints a
-recording have less, of whole recordings one of 200."""
+recording have less, of 321 joints of whole recordings one has."""
 
 
 def still_pairs(partition: Partition) -> frozenset[Pair]:
