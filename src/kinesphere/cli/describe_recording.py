@@ -17,7 +17,7 @@ from kinesphere.labelling import (
     find_subjects,
     match_labels,
 )
-from kinesphere.quality import check_recording, find_gaps, orient
+from kinesphere.quality import check_recording, find_gaps, gathered, orient
 
 _WORST = 8
 """Markers listed by how much of them is missing."""
@@ -32,6 +32,7 @@ def describe_recording(recording: Recording, subject: str | None = None) -> dict
     }
     chosen = choose_model(recording, subject)
     read = recording.history[0] if recording.history else None
+    found = check_recording(recording)
     return {
         "kind": "recording",
         "read": {**read.settings, **read.findings} if read else {},
@@ -54,7 +55,8 @@ def describe_recording(recording: Recording, subject: str | None = None) -> dict
             for event in recording.events
         ],
         "warnings": [warning for step in recording.history for warning in step.warnings],
-        "findings": [finding.as_json() for finding in check_recording(recording)],
+        "findings": [finding.as_json() for finding in found],
+        "findings_in_short": [finding.as_json() for finding in gathered(found)],
     }
 
 
@@ -81,7 +83,7 @@ def show_recording(summary: dict[str, Any]) -> None:
     if summary["warnings"]:
         print_title(console, "Read with doubts")
         print_warnings(console, summary["warnings"])
-    findings = summary["findings"]
+    findings = summary["findings_in_short"]
     print_title(console, "What is wrong with it" if findings else "Nothing looks wrong with it")
     if findings:
         print_table(

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from kinesphere import __version__
-from kinesphere.data import Motion, Recording, Skeleton, Step
+from kinesphere.data import Json, Motion, Recording, Skeleton, Step
 from kinesphere.errors import BadRecording
-from kinesphere.quality import check_recording
+from kinesphere.quality import Finding, check_recording, gathered
 
 IMPOSSIBLE = (0.1, 10.0)
 """m from feet to head: beyond, the unit is wrong and nothing else can be right."""
@@ -35,11 +35,20 @@ def with_checks(recording: Recording) -> Recording:
         return recording
     step = Step(
         "checks",
-        findings={"found": [f.as_json() for f in found]},
-        warnings=tuple(f"{f.what}: {f.remedy}" for f in found),
+        findings={"found": [f.as_json() for f in found], "missing": _missing(found)},
+        warnings=tuple(f"{f.what}: {f.remedy}" for f in gathered(found)),
         version=__version__,
     )
     return replace(recording, history=(*recording.history, step))
+
+
+def _missing(found: Sequence[Finding]) -> dict[str, Json]:
+    """Return marker → how much of it is missing, for a table."""
+    return {
+        f.markers[0]: {**dict(f.numbers), "longest_from_frame": f.frame}
+        for f in found
+        if f.rule == "gap"
+    }
 
 
 def calibration_doubts(

@@ -5,5 +5,6 @@ from kinesphere.quality.checks import check_recording as check_recording
 from kinesphere.quality.findings import Finding as Finding
 from kinesphere.quality.gaps import Gap as Gap
 from kinesphere.quality.gaps import find_gaps as find_gaps
+from kinesphere.quality.gathered import gathered as gathered
 from kinesphere.quality.orientation import OrientationSettings as OrientationSettings
 from kinesphere.quality.orientation import orient as orient

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from kinesphere.skeleton.discovery.account import doubts_of_joints
 from kinesphere.skeleton.discovery.forest import Edge, contracted, rerooted
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
+from kinesphere.skeleton.discovery.joint_doubts import doubts_of_joints, is_told
 from kinesphere.skeleton.discovery.joint_tree import find_forest
 from kinesphere.skeleton.discovery.rival_trees import similar_forests
 
@@ -232,9 +232,19 @@ def test_of_a_joint_without_a_rival_no_other_tree_is_said_to_be_likely():
             ("elbow", Edge(0, 1, 0.009, 0.010)),
             ("knee", Edge(0, 1, 0.009, np.inf)),
             ("hip", Edge(0, 1, 0.002, np.inf)),
-        ]
+        ],
+        np.nan,
     )
     assert "another tree" in rivalled
     assert rivalled.endswith("at elbow (0.10)")
     assert "another tree" not in alone
     assert alone.endswith(": knee may be wrong")
+
+
+@pytest.mark.parametrize(("named", "least"), [(0.8, 0.1), (0.5, 0.3), (np.nan, 0.45)])
+def test_joints_of_a_person_are_doubted_less_than_others(named, least):
+    """Confidence is 1 − cost / cost of the rival; the surer the names, the surer the tree."""
+    assert is_told(Edge(0, 1, 0.01 * (1.01 - least), 0.01), named)
+    assert not is_told(Edge(0, 1, 0.01 * (0.99 - least), 0.01), named)
+    assert is_told(Edge(0, 1, 0.009, np.inf), named)
+    assert not is_told(Edge(0, 1, 0.002, np.inf), named)

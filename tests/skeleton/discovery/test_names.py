@@ -1,6 +1,7 @@
 """When a tree is called a person, and how sure its names are."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,8 +9,10 @@ import pytest
 from kinesphere.skeleton import discover
 from kinesphere.skeleton.discovery.figure import Figure
 from kinesphere.skeleton.discovery.forest import Edge, Forest
-from kinesphere.skeleton.discovery.names import Names, _torso, shaken
-from kinesphere.skeleton.discovery.person import LIKELY, SHARPNESS, STATURE, Person
+from kinesphere.skeleton.discovery.likeliest import SHARPNESS
+from kinesphere.skeleton.discovery.names import Names, _torso
+from kinesphere.skeleton.discovery.person import LIKELY, STATURE, Person
+from kinesphere.skeleton.discovery.trust import shaken
 from kinesphere.synthetic import HAND, make_performance, spoil_with_noise
 
 LIMBS = {0: "trunk", 1: "head", 2: "limb_01", 3: "limb_02"}
@@ -86,13 +89,13 @@ def test_a_hand_of_a_person_s_proportions_is_no_person():
 
 def test_nobody_is_a_reading_too(monkeypatch):
     """A cost at the limit leaves even odds, however bad every other reading is."""
-    from kinesphere.skeleton.discovery import person as module
+    from kinesphere.skeleton.discovery import likeliest as module
 
     only = Person(0, None, ((1, 2), (3, 4)), (), None, lengths=10, stature=STATURE)
-    monkeypatch.setattr(module, "_readings", lambda *_: iter([only]))
+    monkeypatch.setattr(module, "readings", lambda *_: iter([only]))
     for margin in (0.0, 2.0, 10.0):
         cost = LIKELY * 10 - margin
-        monkeypatch.setattr(module, "_judged", lambda _f, p, _n, cost=cost: replace(p, cost=cost))
+        monkeypatch.setattr(module, "judged", lambda _f, p, _n, cost=cost: replace(p, cost=cost))
         _, sure = module.find_person(None, (0, 1, 2, 3, 4))
         assert sure == pytest.approx(1 / (1 + np.exp(-margin / SHARPNESS)))
 
@@ -100,10 +103,10 @@ def test_nobody_is_a_reading_too(monkeypatch):
 @pytest.fixture
 def read_as(monkeypatch):
     """Return costs of a leg pair on a trunk with arms, as a function of other bodies' places."""
-    from kinesphere.skeleton.discovery import person as module
+    from kinesphere.skeleton.discovery import proportions as module
 
     monkeypatch.setattr(Figure, "length", lambda *_: 0.4)
-    monkeypatch.setattr(module, "_off", lambda *_: 0.0)
+    monkeypatch.setattr(module, "off", lambda *_: 0.0)
 
     def cost(*extra, arms=2, feet=True, head=True):
         """``extra`` bodies hang from the body given; the trunk is 0."""
@@ -124,7 +127,7 @@ def read_as(monkeypatch):
         reading = Person(
             0, None, legs, tuple([(0, (7, 8)), (0, (9, 10))][:arms]), 11 if head else None
         )
-        return module._judged(figure, reading, len(bodies)).cost
+        return module.judged(figure, reading, len(bodies)).cost
 
     return cost
 
@@ -150,3 +153,25 @@ def test_what_legs_hang_from_is_the_pelvis_where_nothing_is_above_it():
     assert _torso(Person(0, None, legs, (), None)) == {0: "pelvis"}
     assert _torso(Person(0, None, legs, ((0, (7, 8)),), None)) == {0: "trunk"}
     assert _torso(Person(0, None, legs, (), 7)) == {0: "trunk", 7: "head"}
+
+
+@pytest.mark.parametrize(
+    ("other", "rather"), [(0.40, False), (0.48, True), (0.70, False)]
+)  # of stature; heads are at .42, a thing held high is no head
+def test_what_is_farther_from_the_hips_as_heads_are_is_rather_the_head(other, rather):
+    from kinesphere.skeleton.discovery.proportions import _rather_the_head
+
+    ways = {11: 0.41, 12: other}
+    figure = SimpleNamespace(beside=((1, 3, 11, 12),), length=lambda _, b: ways[b[1]])
+    person = Person(0, None, ((1, 2), (3, 4)), (), 11)
+    assert _rather_the_head(figure, person, ("joint", 0, 1), 1.0) is rather
+
+
+def test_another_head_contradicts():
+    from kinesphere.skeleton.discovery.likeliest import _contradicts
+
+    legs = ((1, 2), (3, 4))
+    one, other, none = (Person(0, None, legs, (), head) for head in (11, 12, None))
+    assert _contradicts(other, one)
+    assert not _contradicts(none, one)
+    assert not _contradicts(one, one)

@@ -12,16 +12,16 @@ from kinesphere.skeleton.discovery.twigs import without_twigs
 LIMITS = SkeletonSettings()
 
 
-@pytest.fixture(scope="module")
-def with_twig(recorded, owner):
-    """Return bodies of which two of the trunk's markers are cut off, and what limbs are called."""
+@pytest.fixture(scope="module", params=[2, 3])
+def with_twig(request, recorded, owner):
+    """Return bodies of which some of the trunk's markers are cut off, and what limbs are called."""
     points = np.ascontiguousarray(recorded.markers[::3])
     trunk = [i for i, limb in enumerate(owner) if limb == "trunk"]
     slipping = np.array(points)
     rng = np.random.default_rng(1)
-    slipping[:, trunk[:2]] += rng.normal(scale=0.001, size=(len(points), 1, 3))
+    slipping[:, trunk[: request.param]] += rng.normal(scale=0.001, size=(len(points), 1, 3))
     limbs = [limb for limb in dict.fromkeys(owner) if limb != "trunk"]
-    bodies = [np.array(trunk[2:]), np.array(trunk[:2])]
+    bodies = [np.array(trunk[request.param :]), np.array(trunk[: request.param])]
     bodies += [np.flatnonzero(np.array(owner) == limb) for limb in limbs]
     return slipping, bodies, ["trunk", "limb_01", *limbs]
 
@@ -39,9 +39,18 @@ def partition_of(points, bodies, monkeypatch):
     return find_partition(points, settings, LIMITS, JointCosts(points))
 
 
-def told(partition, called):
+def told(partition, called, unnamed=frozenset()):
     tree = partition.forest.trees[0]
-    return tree, Names({b: called[b] for b in tree}, 0.9, {})
+    return tree, Names({b: called[b] for b in tree}, 0.9, {}, unnamed=unnamed)
+
+
+def test_a_limb_in_doubt_stays(with_twig, monkeypatch):
+    points, bodies, called = with_twig
+    partition = partition_of(points, bodies, monkeypatch)
+    tree, names = told(partition, called, frozenset({1}))
+    found, kept, _ = without_twigs(partition, tree, names, DiscoverySettings(), LIMITS)
+    assert kept == tree
+    assert found.bodies == partition.bodies
 
 
 def test_what_is_no_limb_goes_back_to_the_trunk(with_twig, monkeypatch):

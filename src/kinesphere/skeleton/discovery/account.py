@@ -7,14 +7,20 @@ import numpy as np
 from kinesphere.data import Array, Json, TopologicalModel
 from kinesphere.skeleton.discovery.clustering import merge_curve
 from kinesphere.skeleton.discovery.forest import Edge
-from kinesphere.skeleton.discovery.names import DOUBTFUL_COUNT, Names
+from kinesphere.skeleton.discovery.joint_doubts import doubts_of_joints, is_told
+from kinesphere.skeleton.discovery.names import Names
 from kinesphere.skeleton.discovery.partition import Partition
 from kinesphere.skeleton.discovery.steadiness import owners
+from kinesphere.skeleton.discovery.stillness import still_pairs
+from kinesphere.skeleton.discovery.trust import DOUBTFUL_COUNT
 
 CURVE = 30
 """Most bodies in the merge curve."""
 DOUBTFUL_MARKER = 0.5
 """Confidence below which a marker is steadier in the next body than in its own."""
+UNSTEADY = 0.02
+"""m, wander within a body from which it is doubted that it is one: people in soft clothes have up
+to 0.017, limbs of two markers each that were taken together 0.03 to 0.04."""
 
 
 def account_of(
@@ -71,7 +77,7 @@ def account_of(
                 "cost_mm": _mm(unit * forest_edge.cost),
                 "next_best_mm": _mm(unit * forest_edge.next_best),
                 "confidence": _short(forest_edge.confidence),
-                "doubtful": forest_edge.doubtful,
+                "doubtful": is_told(forest_edge, names.confidence),
                 "n_axes": joint.n_axes,
             }
             for joint in model.joints
@@ -126,9 +132,24 @@ def doubts_about(
             f"{_count(partition)} bodies were found, but their number hardly stands out "
             f"(confidence {sure:.2f}); set discovery.bodies where it is known"
         )
-    doubts += doubts_of_joints(
-        [(j.name, _edge(partition, j.parent, j.child, limb_of)) for j in model.joints]
-    )
+    unsteady = [
+        limb
+        for body, limb in limb_of.items()
+        if _rms(partition.belonging.own[partition.bodies[body]]) > UNSTEADY
+    ]
+    if unsteady:
+        doubts.append(
+            f"markers move apart within {', '.join(unsteady)}: each may be several bodies of too "
+            "few markers, and the number of bodies is in doubt"
+        )
+    edges = [(j.name, _edge(partition, j.parent, j.child, limb_of)) for j in model.joints]
+    apart = still_pairs(partition)
+    if still := [name for name, edge in edges if (edge.a, edge.b) in apart]:
+        doubts.append(
+            f"limbs move against each other no more than markers within them do at "
+            f"{', '.join(still)}: each two may be one body, and the number of bodies is in doubt"
+        )
+    doubts += doubts_of_joints(edges, names.confidence)
     if faint:
         doubts.append(
             f"hardly anything shows a joint at {', '.join(faint)}: a limb there stays about where "
@@ -166,25 +187,6 @@ def _solved(partition: Partition, limb_of: dict[int, str]) -> int:
 def _edge(partition: Partition, parent: str, child: str, limb_of: dict[int, str]) -> Edge:
     ends = {body for body, limb in limb_of.items() if limb in (parent, child)}
     return next(edge for edge in partition.forest.edges if {edge.a, edge.b} == ends)
-
-
-def doubts_of_joints(edges: Sequence[tuple[str, Edge]]) -> list[str]:
-    """Return what is said of doubtful joints: of those with a rival, and of those without."""
-    shaky = [(name, edge) for name, edge in edges if edge.doubtful]
-    rivalled = [f"{name} ({e.confidence:.2f})" for name, e in shaky if np.isfinite(e.next_best)]
-    alone = [name for name, edge in shaky if not np.isfinite(edge.next_best)]
-    told = []
-    if rivalled:
-        told.append(
-            "another tree of bodies is nearly as likely, and joints may be wrong, at "
-            f"{', '.join(rivalled)}"
-        )
-    if alone:
-        told.append(
-            f"these bodies hardly fit a joint between them, yet no others are left for one: "
-            f"{', '.join(alone)} may be wrong"
-        )
-    return told
 
 
 def _rms(values: Array) -> float:

@@ -1,6 +1,5 @@
 """Trajectories in, a topological model out: which markers are a body, and which bodies meet."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,20 +10,21 @@ from kinesphere.data import (
     TopologicalModel,
     settings_as_json,
 )
-from kinesphere.errors import BadRecording, DegenerateMotion
+from kinesphere.errors import BadRecording
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
-from kinesphere.skeleton.discovery.forest import Forest, rerooted
+from kinesphere.skeleton.discovery.copies import find_copies
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
-from kinesphere.skeleton.discovery.names import settled, shaken
+from kinesphere.skeleton.discovery.names import settled
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
 from kinesphere.skeleton.discovery.rigidity import trimmed_share, worth_grouping
+from kinesphere.skeleton.discovery.root import from_the_root
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.discovery.size import PERSON, from_the_middle, subject_size
 from kinesphere.skeleton.discovery.spikes import without_spikes
-from kinesphere.skeleton.discovery.steadiness import OWN_POSE
 from kinesphere.skeleton.discovery.tree_model import tree_model
 from kinesphere.skeleton.discovery.tree_names import named_tree
-from kinesphere.skeleton.discovery.twigs import TORSO, without_twigs
+from kinesphere.skeleton.discovery.trust import shaken
+from kinesphere.skeleton.discovery.twigs import without_twigs
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.settings import SkeletonSettings
 
@@ -80,17 +80,21 @@ def discover(
     markers = without_spikes(recording.markers[:, columns])
     unit = subject_size(markers) / PERSON
     markers /= unit  # from here on the subject is as large as a person
+    copies = find_copies(markers, columns)
+    alike = {recording.labels[columns[c]]: recording.labels[columns[k]] for c, k in copies.items()}
+    if copies:
+        markers, columns = np.delete(markers, list(copies), 1), np.delete(columns, list(copies))
     points = np.ascontiguousarray(markers[spread_frames(markers, settings.sample_frames)])
     limits = skeleton or SkeletonSettings()
     costs = JointCosts(points, unit)
     trim = trimmed_share(recording.n_frames / recording.rate, settings.ghost_s)
     partition = find_partition(points, settings, limits, costs, trim=trim)
     labels = tuple(recording.labels[c] for c in columns)
-    _check_tree(partition, labels, settings.tree)
+    _check_tree(partition, settings.tree)
     partition, tree, names = named_tree(partition, costs, settings)
     if settings.bodies is None:
         partition, tree, names = without_twigs(partition, tree, names, settings, limits)
-    forest = _from_the_torso(partition, names.limbs)
+    forest = from_the_root(partition, names.limbs, labels, limits)
     tree = next(t for t in forest.trees if tree[0] in t)
     partition = replace(partition, forest=forest)
     counted = 1.0 if settings.bodies else partition.clustering.count_confidence
@@ -106,8 +110,10 @@ def discover(
     step = Step(
         name="discovery",
         settings=settings_as_json(settings),
-        findings=account_of(partition, labels, ghosts, model, names, limb_of, near),
-        warnings=doubts_about(
+        findings=account_of(partition, labels, ghosts, model, names, limb_of, near)
+        | {"copies": dict(alike)},
+        warnings=_told_of_copies(alike)
+        + doubts_about(
             partition,
             labels,
             model,
@@ -120,27 +126,18 @@ def discover(
     return Discovery(model, step)
 
 
-def _check_tree(partition: Partition, labels: Sequence[str], number: int) -> None:
-    forest = partition.forest
-    if number > len(forest.trees):
+def _check_tree(partition: Partition, number: int) -> None:
+    if number > len(partition.forest.trees):
         raise BadRecording(
-            f"tree {number} was asked for; {len(forest.trees)} move independently here"
-        )
-    tree = forest.trees[number - 1]
-    if len(partition.bodies[tree[0]]) < OWN_POSE:
-        told = "; ".join(" ".join(labels[m] for m in partition.bodies[body]) for body in tree)
-        raise DegenerateMotion(
-            f"no body has the three markers that a root needs; the bodies are {told}"
+            f"tree {number} was asked for; {len(partition.forest.trees)} move independently here"
         )
 
 
-def _from_the_torso(partition: Partition, limb_of: dict[int, str]) -> Forest:
-    """Let the tree hang from the pelvis, or from the trunk where it is the one that has a pose."""
-    for limb in TORSO:
-        for body, name in limb_of.items():
-            if name == limb and len(partition.bodies[body]) >= OWN_POSE:
-                return rerooted(partition.forest, body)
-    return partition.forest
+def _told_of_copies(alike: dict[str, str]) -> tuple[str, ...]:
+    if not alike:
+        return ()
+    pairs = ", ".join(f"{copy} (as {kept})" for copy, kept in alike.items())
+    return (f"trajectories that are there twice are left out but for one: {pairs}",)
 
 
 def _faint(

@@ -1,15 +1,14 @@
 """Trees of bodies: which meet, how sure each joint is, and what hangs from what."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 DOUBTFUL = 0.15
 """Confidence of an edge below which another one is about as likely."""
-TOLD = 0.3
-"""Confidence of an edge below which it is said that the joint may be wrong: of joints in parts of
-recordings a third is wrong below .2, a sixth from .2 to .3, one in twenty above."""
+UNSURE = 0.3
+"""Confidence of an edge below which the joint is not relied upon where limbs are measured."""
 FAR_APART = 0.007
 """m, cost from which that is said of a joint without any rival: of such joints that cost less,
 one in twenty-five is wrong, of those that cost more one in six."""
@@ -38,9 +37,13 @@ class Edge:
 
     @property
     def doubtful(self) -> bool:
-        """Whether a person should be told that this joint may be wrong."""
+        """Whether this joint is not to be relied upon."""
+        return self.below(UNSURE)
+
+    def below(self, limit: float) -> bool:
+        """Return whether the joint is less sure, or has no rival and hardly fits."""
         alone = not np.isfinite(self.next_best)
-        return self.cost > FAR_APART if alone else self.confidence < TOLD
+        return self.cost > FAR_APART if alone else self.confidence < limit
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,11 @@ class Forest:
         """Return the bodies that meet this one."""
         parent = self.parent(body)
         return self.children(body) if parent is None else [parent, *self.children(body)]
+
+    def amid(self, tree: Sequence[int]) -> list[int]:
+        """Return the bodies of a tree, the nearest to all its markers first."""
+        edges = [pair_of(edge) for edge in self.edges]
+        return sorted(tree, key=_ways_to_all(edges, self.sizes))
 
     def edge(self, child: int) -> Edge:
         """Return the edge towards a body's parent."""
@@ -143,12 +151,19 @@ def _root(tree: Sequence[int], edges: Sequence[Pair], sizes: Sequence[int]) -> i
     Closeness centrality, weighed by markers: a torso rather than the middle of a long chain.
     """
     able = [body for body in tree if sizes[body] > 2] or list(tree)
+    return min(able, key=_ways_to_all(edges, sizes))
+
+
+def _ways_to_all(
+    edges: Sequence[Pair], sizes: Sequence[int]
+) -> Callable[[int], tuple[int, int, int]]:
+    """Return what tells how near a body is to all markers of its tree."""
 
     def way_to_all(body: int) -> tuple[int, int, int]:
         away = _reached(body, edges, len(sizes))
         return sum(sizes[b] * way for b, way in away.items()), -sizes[body], body
 
-    return min(able, key=way_to_all)
+    return way_to_all
 
 
 def rerooted(forest: Forest, root: int) -> Forest:

@@ -7,21 +7,13 @@ import numpy as np
 
 from kinesphere.data import Json
 from kinesphere.skeleton.discovery.figure import Figure
-from kinesphere.skeleton.discovery.forest import DOUBTFUL, Forest
-from kinesphere.skeleton.discovery.person import Person, confidence_of, find_person
+from kinesphere.skeleton.discovery.likeliest import confidence_of, find_person
+from kinesphere.skeleton.discovery.person import Person
+from kinesphere.skeleton.discovery.proportions import kind_of_lone_arm
 from kinesphere.skeleton.discovery.sides import Sides, find_sides
 
 SURE = 0.75
 """Least confidence of a reading for names to be given."""
-EVEN = 0.6
-"""Confidence below which names are told to be unsure: of thirds and halves of recordings one of two
-between .5 and this has a wrong one."""
-GIVEN = 0.45
-"""Least confidence for names to be given: below, 4 of 9 parts of recordings had wrong ones, above
-1 of 19; all whole recordings at hand are above."""
-DOUBTFUL_COUNT = 0.3
-"""Confidence below which another number of bodies would do about as well: it is above .7 on
-synthetic bodies and rigid plates, .27 to .73 on sparse markers of a person."""
 NOBODY = (
     "no person is seen in the tree of bodies; limbs are numbered. If it was a person, bodies or "
     "joints are wrong, or limbs have no markers"
@@ -44,6 +36,8 @@ class Names:
     """Why there are no names, or not all; for a person."""
     cost: float = np.inf
     """Of the likeliest reading as a person, convincing or not; infinite where there is none."""
+    unnamed: frozenset[int] = frozenset()
+    """Bodies that are a person's limbs, though not told which."""
     refused: str = ""
     """Why these names are not given after all: the reading is good, the size is not a person's."""
 
@@ -88,12 +82,23 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     given = _torso(person)
     if sides is None:
         doubt = "nothing tells left from right; arms and legs are numbered"
-        return Names(numbered(given, tree), confidence, account, doubt, person.cost, refused)
+        unnamed = frozenset(person.limbs.keys() - given.keys())
+        return Names(
+            numbered(given, tree), confidence, account, doubt, person.cost, unnamed, refused
+        )
     account |= {"sides_confidence": round(sides.confidence, 3)}
     account |= {f"sides_from_{name}": round(score, 2) for name, score in sides.scores.items()}
-    given |= _sided(person, sides)
+    lone = {
+        arm[0]: kind_of_lone_arm(figure, at, arm[0], person.stature)
+        for at, arm in person.arms
+        if len(arm) == 1
+    }
+    sided = _sided(person, sides)
+    given |= {body: limb for body, limb in sided.items() if lone.get(body, "plain")}
     sure = confidence * sides.confidence
-    return Names(numbered(given, tree), sure, account, cost=person.cost, refused=refused)
+    doubt = _whole_arms([sided[body] for body, kind in lone.items() if kind == "whole"])
+    unnamed = frozenset(person.limbs.keys() - given.keys())
+    return Names(numbered(given, tree), sure, account, doubt, person.cost, unnamed, refused)
 
 
 def settled(names: Names, tree: Sequence[int]) -> Names:
@@ -109,60 +114,6 @@ def _ambiguous(confidence: float) -> str:
         f"the tree can be read as a person in more than one way (confidence {confidence:.2f}); "
         "limbs are numbered"
     )
-
-
-def shaken(names: Names, forest: Forest, count_confidence: float) -> Names:
-    """Return the names with what doubt in the bodies they stand on leaves of their confidence.
-
-    A name is no surer than the tree it was read off: where the most doubtful edge of a named limb
-    has a rival of the same cost, or another number of bodies would do as well, half is left. Where
-    too little is, limbs are numbered, and the likely names are told.
-
-    Parameters
-    ----------
-    names
-        As proportions and sides give them.
-    forest
-        Of all bodies.
-    count_confidence
-        0…1 that there are so many bodies.
-    """
-    if not names.given:
-        return names
-    named = {body for body, limb in names.limbs.items() if not limb.startswith("limb_")}
-    edges = [edge.confidence for edge in forest.edges if named & {edge.a, edge.b}]
-    tree = (1 + min(1.0, min(edges, default=1.0) / DOUBTFUL)) / 2
-    count = (1 + min(1.0, count_confidence / DOUBTFUL_COUNT)) / 2
-    sure = names.confidence * tree * count
-    account = names.account | {"bodies_confidence": round(tree * count, 3)}
-    doubt = names.doubt
-    if sure < GIVEN:
-        of_names = next(bodies for bodies in forest.trees if bodies[0] in names.limbs)
-        return _withheld(replace(names, confidence=sure, account=account), of_names)
-    if sure < EVEN:
-        told = f"names of limbs are unsure and may be wrong (confidence {sure:.2f}): check them"
-        doubt = f"{doubt}; {told}" if doubt else told
-    return replace(names, confidence=sure, account=account, doubt=doubt)
-
-
-def _withheld(names: Names, tree: Sequence[int]) -> Names:
-    """Return numbers for the named limbs too, and which names were likely."""
-    numbers = numbered({}, tree)
-    likely: dict[str, Json] = {
-        numbers[body]: names.limbs[body]
-        for body in tree
-        if not names.limbs[body].startswith("limb_")
-    }
-    account = names.account | {
-        "person": False,
-        "likely_names": likely,
-        "likely_confidence": round(names.confidence, 3),
-    }
-    told = (
-        f"names of limbs were too unsure to be given (confidence {names.confidence:.2f}): limbs "
-        f"are numbered; likely were {', '.join(f'{k} {limb}' for k, limb in likely.items())}"
-    )
-    return Names(numbers, np.nan, account, told, names.cost)
 
 
 def no_names(tree: Sequence[int], doubt: str = "") -> Names:
@@ -191,6 +142,12 @@ def _sided(person: Person, sides: Sides) -> dict[int, str]:
         side = "left" if i == sides.left_arm else "right"
         given |= {b: f"{side}_{kind}" for b, kind in zip(arm, ARM, strict=False)}
     return given
+
+
+def _whole_arms(limbs: Sequence[str]) -> str:
+    """Return for a person that upper arms are whole arms."""
+    told = f"no bend shows at the elbow of {', '.join(limbs)}: the forearm is on that limb too"
+    return told if limbs else ""
 
 
 def numbered(given: dict[int, str], tree: Sequence[int]) -> dict[int, str]:

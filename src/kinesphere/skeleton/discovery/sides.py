@@ -50,7 +50,7 @@ def find_sides(figure: Figure, person: Person) -> Sides | None:
     voices = {
         "feet": [_foot(leg, up, front) for leg in legs if len(leg) > 3],
         "knees": [-_bend(leg[0], leg[1], leg[2], -up, front) for leg in legs],
-        "elbows": [_bend(arm[0], arm[1], arm[2], -up, front) for arm in arms],
+        "elbows": [_bend(arm[0], arm[1], arm[2], -up, front) for arm in arms if len(arm) > 2],
     }
     scores = {
         name: float(np.mean([s for s in said if np.isfinite(s)]))

@@ -8,9 +8,11 @@ from kinesphere.skeleton.discovery.chains import widest
 from kinesphere.skeleton.discovery.names import Names, numbered
 from kinesphere.skeleton.discovery.partition import Partition, merged
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
-from kinesphere.skeleton.discovery.steadiness import OWN_POSE
 from kinesphere.skeleton.settings import SkeletonSettings
 
+SURELY = 1.5
+"""Times the ratio from which a body falls in two up to which what is no limb is the torso's: a
+person has none there. Pieces of trunks had 0.4 to 1.03 of that ratio, heads 2.5."""
 TORSO = ("pelvis", "trunk")
 """What a person's tree hangs from, the first that is there."""
 
@@ -24,9 +26,9 @@ def without_twigs(
 ) -> tuple[Partition, tuple[int, ...], Names]:
     """Give a person's torso back what was found beside it: a shoulder blade's two markers.
 
-    A body that is no limb, has no pose of its own, and together with trunk or pelvis is not clearly
-    less steady than those are; arms that hung from it hang from there. Numbers of limbs without a
-    name close up.
+    A body that is no limb, and together with trunk or pelvis is not clearly less steady than the
+    two are by themselves; arms that hung from it hang from there. Numbers of limbs without a name
+    close up.
 
     Parameters
     ----------
@@ -43,17 +45,13 @@ def without_twigs(
     wander, kept = partition.rigidity.wander, tree
     for body in tree:
         near = [b for b in partition.forest.neighbours(body) if names.limbs[b] in TORSO]
-        if (
-            not near
-            or len(partition.bodies[body]) >= OWN_POSE
-            or not names.limbs[body].startswith("limb_")
-        ):
+        if not near or body in names.unnamed or not names.limbs[body].startswith("limb_"):
             continue
         parent = near[0]
         torso = partition.bodies[parent]
-        steady = max(partition.usual, widest(wander, torso))
+        steady = max(partition.usual, widest(wander, torso), widest(wander, partition.bodies[body]))
         both = np.concatenate([torso, partition.bodies[body]])
-        if widest(wander, both) <= settings.split_ratio * steady:
+        if widest(wander, both) <= SURELY * settings.split_ratio * steady:
             partition = merged(partition, parent, body, settings, limits)
             kept = tuple(other for other in kept if other != body)
     given = {b: names.limbs[b] for b in kept if not names.limbs[b].startswith("limb_")}

@@ -1,0 +1,51 @@
+"""Which body a tree hangs from: one whose markers tell where it points."""
+
+from collections.abc import Sequence
+
+from kinesphere.errors import DegenerateMotion
+from kinesphere.skeleton.body import measure_shape
+from kinesphere.skeleton.discovery.forest import Forest, rerooted
+from kinesphere.skeleton.discovery.partition import Partition
+from kinesphere.skeleton.discovery.twigs import TORSO
+from kinesphere.skeleton.scale import scaled, size_share
+from kinesphere.skeleton.settings import SkeletonSettings
+
+
+def from_the_root(
+    partition: Partition,
+    limb_of: dict[int, str],
+    labels: Sequence[str],
+    limits: SkeletonSettings,
+) -> Forest:
+    """Return the forest with the tree hanging from its pelvis or, without one, from its trunk.
+
+    From the body nearest to all markers where neither is told or tells where it points. What is too
+    near to a line for that when limbs are measured is no root.
+
+    Parameters
+    ----------
+    partition
+    limb_of
+        Bodies of the tree → limb.
+    labels
+        Of the partition's markers.
+    limits
+        What counts as an outlier and as a line, of a person.
+
+    Raises
+    ------
+    DegenerateMotion
+        If no body tells where it points.
+    """
+    forest, points, unit = partition.forest, partition.rigidity.points, partition.unit
+    share = size_share(points * unit)
+    outlier = scaled(limits, share).outlier_mm * 1e-3 / unit
+    spread = scaled(limits, share).min_spread_mm * 1e-3 / unit
+    torso = [body for limb in TORSO for body, name in limb_of.items() if name == limb]
+    for body in dict.fromkeys((*torso, *forest.amid(list(limb_of)))):
+        if measure_shape(points[:, partition.bodies[body]], outlier, spread):
+            return rerooted(forest, body)
+    told = "; ".join(" ".join(labels[m] for m in partition.bodies[body]) for body in limb_of)
+    raise DegenerateMotion(
+        f"no body has the three markers off a line that a root needs; the bodies are {told}"
+    )

@@ -1,0 +1,57 @@
+"""Gaps of many markers are one line for a person, and stay one each for a machine."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from kinesphere.pipeline.doubts import with_checks
+from kinesphere.quality import Finding, check_recording, gathered
+from kinesphere.synthetic import make_performance
+
+
+def gap(marker, share, longest, severity="warning"):
+    return Finding(
+        "gap",
+        severity,
+        f"{marker} is missing",
+        "fill it",
+        markers=(marker,),
+        frame=1,
+        numbers=(("missing_share", share), ("longest_s", longest)),
+    )
+
+
+def test_gaps_of_one_severity_are_one_line_with_their_number_and_the_worst():
+    swap = Finding("swap", "warning", "A and B swap", "swap them back")
+    notes = [gap("D", 0.1, 0.6, "note"), gap("E", 0.2, 0.7, "note")]
+    told = gathered([gap("A", 0.5, 4.0), swap, gap("B", 0.91, 2.0), gap("C", 0.7, 3.0), *notes])
+    assert [finding.rule for finding in told] == ["gap", "swap", "gap"]
+    assert told[0].what == (
+        "3 markers are missing in 50.0% to 91.0% of the frames, most B; "
+        "the longest gap is A's, 4.00 s"
+    )
+    assert told[0].markers == ("A", "B", "C")
+    assert told[1] is swap
+    assert (told[2].severity, told[2].markers) == ("note", ("D", "E"))
+
+
+def test_a_single_gap_is_told_as_it_is():
+    one = [gap("A", 0.5, 4.0), gap("B", 0.1, 0.6, "note")]
+    assert gathered(one) == tuple(one)
+    assert gathered([]) == ()
+
+
+def test_a_solution_warns_once_of_many_gaps_and_holds_the_list():
+    performance = make_performance(np.random.default_rng(0), rate=50, calibration_s=4, free_s=2)
+    markers = performance.recording.markers.copy()
+    for k in range(10, 40):  # each gone for more than half of the time
+        markers[k : k + int(0.6 * len(markers)), k] = np.nan
+    recording = replace(performance.recording, markers=markers)
+    gone = recording.labels[10:40]
+    step = with_checks(recording).history[-1]
+    (told,) = (doubt for doubt in step.warnings if "missing" in doubt)
+    assert told.startswith("30 markers are missing in ")
+    assert set(step.findings["missing"]) == set(gone)
+    assert all(row["missing_share"] > 0.59 for row in step.findings["missing"].values())
+    assert sum(f["rule"] == "gap" for f in step.findings["found"]) == 30
+    assert sum(f.rule == "gap" for f in check_recording(recording)) == 30

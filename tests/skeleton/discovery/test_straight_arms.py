@@ -1,0 +1,72 @@
+"""People whose elbows never bend, or whose forearms have no markers."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kinesphere.skeleton import discover
+from kinesphere.synthetic import make_performance, spoil_with_noise
+
+SIDES = ("left", "right")
+
+
+@pytest.fixture(scope="module")
+def performance():
+    return make_performance(np.random.default_rng(4), rate=25, calibration_s=40, free_s=20)
+
+
+def found_of(recording):
+    return discover(spoil_with_noise(recording, np.random.default_rng(4), deviation=0.001))
+
+
+def with_straight_elbows(performance, sides):
+    """Let forearms ride on their upper arms, as they lie where the elbow is straightest."""
+    names, recording = performance.skeleton.limb_names, performance.recording
+    markers, motion = recording.markers.copy(), performance.motion
+    for side in sides:
+        above, below = names.index(f"{side}_upper_arm"), names.index(f"{side}_forearm")
+        turns, origins = motion.rotations[:, above], motion.origins[:, above]
+        bend = np.einsum("fij,fij->f", turns, motion.rotations[:, below])
+        straight = int(bend.argmax())
+        for label in performance.skeleton.limbs[below].markers:
+            column = recording.labels.index(label)
+            local = turns[straight].T @ (markers[straight, column] - origins[straight])
+            markers[:, column] = origins + turns @ local
+    return replace(recording, markers=markers)
+
+
+def limbs(found, performance):
+    owner = {label: limb.name for limb in performance.skeleton.limbs for label in limb.markers}
+    return {s.name: {owner[label] for label in s.markers} for s in found.model.segments}
+
+
+@pytest.mark.parametrize("sides", [SIDES, ("left",), ("right",)])
+def test_an_arm_whose_elbow_stays_straight_is_an_upper_arm_and_that_is_said(performance, sides):
+    found = found_of(with_straight_elbows(performance, sides))
+    named = limbs(found, performance)
+    stiff = {f"{side}_upper_arm": {f"{side}_upper_arm", f"{side}_forearm"} for side in sides}
+    gone = {f"{side}_forearm" for side in sides}
+    whole = {limb.name: {limb.name} for limb in performance.skeleton.limbs}
+    assert named == {limb: own for limb, own in whole.items() if limb not in gone} | stiff
+    (told,) = (doubt for doubt in found.step.warnings if "no bend shows" in doubt)
+    assert {limb for limb in whole if limb in told} == set(stiff)
+    joints = {joint.child: joint.name for joint in found.model.joints}
+    assert all(joints[arm] == arm.replace("upper_arm", "shoulder") for arm in stiff)
+
+
+def test_an_upper_arm_without_a_forearm_is_one_and_nothing_is_said(performance):
+    recording = performance.recording
+    owner = {label: limb.name for limb in performance.skeleton.limbs for label in limb.markers}
+    kept = [c for c, label in enumerate(recording.labels) if "forearm" not in owner[label]]
+    found = found_of(
+        replace(
+            recording,
+            markers=np.ascontiguousarray(recording.markers[:, kept]),
+            labels=tuple(recording.labels[c] for c in kept),
+        )
+    )
+    named = limbs(found, performance)
+    assert all(own == {limb} for limb, own in named.items())
+    assert {f"{side}_upper_arm" for side in SIDES} <= set(named)
+    assert not [doubt for doubt in found.step.warnings if "no bend shows" in doubt]
