@@ -188,9 +188,9 @@ def poses(axes: Array, rest: Array, long_axis: Array, angles: Array) -> Array:
     return turned
 
 
-def wander(rng: np.random.Generator, n: int, width: int) -> Array:
-    """Return an Ornstein–Uhlenbeck process of deviation 1 and 0.4 s memory, (n, width)."""
-    keep = np.exp(-1 / (RATE * MEMORY))
+def wander(rng: np.random.Generator, n: int, width: int, memory: float = MEMORY) -> Array:
+    """Return an Ornstein–Uhlenbeck process of deviation 1 and so many s memory, (n, width)."""
+    keep = np.exp(-1 / (RATE * memory))
     kicks = rng.normal(size=(n, width)) * np.sqrt(1 - keep**2)
     kicks[0] = rng.normal(size=width)
     return np.asarray(lfilter([1.0], [1.0, -keep], kicks, axis=0))

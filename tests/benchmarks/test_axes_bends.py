@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from benchmarks.axes.bends import HIGH, LOW, bends, scatter
+from benchmarks.axes.hinges import make_hinge
 from benchmarks.axes.means import MEANS, plain_mean, resisting_mean, spatial_median
-from benchmarks.axes.outlying import coverage, make_hinge
+from benchmarks.axes.outlying import coverage
 from benchmarks.axes.same_person import summary, turned
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
@@ -104,6 +105,24 @@ def test_only_the_first_bend_of_a_hinge_is_lifted():
     assert off.max() < 1e-6
     plain = make_hinge(np.random.default_rng(4), "clean", 0.0)
     assert_allclose(plain.rotations, joint.clean.rotations, atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["turning", "renewed"])
+def test_a_hinge_turns_about_its_limb_alone_by_as_much_as_asked_for(kind):
+    plain = make_hinge(np.random.default_rng(4), "OU 1°")
+    limb = plain.long_axis
+    squares = []
+    for seed in range(24):
+        joint = make_hinge(np.random.default_rng(seed), "OU 1°", **{kind: 4.0})
+        turns = np.rad2deg(joint.angles - make_hinge(np.random.default_rng(seed), "OU 1°").angles)
+        assert_allclose(turns[:, :2], 0.0)
+        squares.append((turns[joint.moving, 2] ** 2).mean())
+        still = np.abs(turns[~joint.moving, 2]).max()
+        assert still < 1e-9 if kind == "renewed" else still > 1.0
+    assert np.sqrt(np.mean(squares)) == pytest.approx(4.0, rel=0.2)
+    turned = make_hinge(np.random.default_rng(4), "OU 1°", **{kind: 4.0})
+    assert_allclose(turned.rotations @ limb, plain.rotations @ limb, atol=1e-12)
+    assert np.abs(turned.rotations - plain.rotations).max() > 0.02
 
 
 def test_errors_are_counted_against_what_was_said_of_them():
