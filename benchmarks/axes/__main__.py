@@ -16,6 +16,7 @@ from benchmarks.axes import (
     filters,
     floor,
     free_motion,
+    halves_alone,
     held,
     normalization,
     one_wide,
@@ -94,6 +95,7 @@ SECTIONS: Mapping[str, Callable[[Run, Path], dict[str, Any]]] = {
     "segments": lambda run, data: {
         "segments": run("segments", segments.run, segments.trials(data)),
     },
+    "alone": halves_alone.section,
     "normalization": lambda run, _: {
         "normalization": normalization.summary(
             run("normalization", normalization.run, normalization.TASKS)

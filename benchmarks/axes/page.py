@@ -9,6 +9,7 @@ from benchmarks.axes import (
     estimators,
     filters,
     free_motion,
+    halves_alone,
     normalization,
     one_wide,
     outlying,
@@ -48,6 +49,7 @@ def all_bars(found: dict[str, Any]) -> list[Bar]:
         *normalization.bars(found["normalization"]),
         *papers_metrics.bars(found["paper"]),
         *repeatability.bars(found["halves"]),
+        *halves_alone.bars(found.get("alone", {})),
         *vendor.bars(found["vendor"]),
     ]
 
@@ -70,6 +72,7 @@ def page(found: dict[str, Any]) -> str:
             same_person.page(found.get("same_person", {})),
             papers_metrics.page(found["paper"], found["skipped"]),
             repeatability.page(found["halves"]),
+            halves_alone.page(found.get("alone", {})),
             bends.page(found.get("bends", {})),
             times.page(found["times"]),
             vendor.page(found["vendor"]),

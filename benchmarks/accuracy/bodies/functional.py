@@ -79,13 +79,13 @@ def _row(trial: str, name: str) -> Functional:
     whole = solve(recording, model)
     middle = recording.n_frames // 2
     parts = slice(middle), slice(middle, None)
-    halves = [_half(recording, model, part) for part in parts]
+    halves = [half_of(recording, model, part) for part in parts]
     knee = name.endswith("knee")
     eighth = np.arange(recording.n_frames) * 8 // recording.n_frames % 2
-    blocks = [_half(recording, model, np.flatnonzero(eighth == k)) for k in (0, 1)]
+    blocks = [half_of(recording, model, np.flatnonzero(eighth == k)) for k in (0, 1)]
     ours = _compared(halves, name, _ours, knee=knee)
     mixed = _compared(blocks, name, _ours, knee=knee)
-    aided = [_half(recording, chosen, part) for part in parts] if knee else halves
+    aided = [half_of(recording, chosen, part) for part in parts] if knee else halves
     peer = _compared(halves, name, _peer, knee=knee)
     here, there = _ours(whole, name), _peer(whole, name)
     poses = _relative(whole, name)
@@ -111,7 +111,8 @@ def _row(trial: str, name: str) -> Functional:
     )
 
 
-def _half(recording: Recording, model: TopologicalModel, part: slice | np.ndarray) -> Solution:
+def half_of(recording: Recording, model: TopologicalModel, part: slice | np.ndarray) -> Solution:
+    """Solve some frames of a recording as if they were all of it."""
     outputs = tuple(replace(o, values=o.values[part], residuals=None) for o in recording.outputs)
     return solve(
         replace(

@@ -45,6 +45,20 @@ def test_a_trunk_whose_markers_are_in_a_plane_is_the_root(actor, recorded, owner
     assert np.isfinite(fit_skeleton(recording, found.model).rotations[:, 0]).all()
 
 
+def test_what_is_a_line_goes_by_the_size_of_the_tree_not_of_all_who_are_there(recorded):
+    """Two figures of a hand's size, two metres apart: the recording is as large as a person."""
+    small = 0.1 * recorded.markers
+    other = small[::-1] + np.array([2.0, 0.0, 0.0])
+    both = replace(
+        recorded,
+        markers=np.concatenate([small, other], axis=1),
+        labels=tuple(f"*{i}" for i in range(2 * recorded.n_markers)),
+    )
+    found = discover(both)
+    assert found.model.root in {segment.name for segment in found.model.segments}
+    assert len(found.model.segments) > 8
+
+
 def test_motion_in_a_plane_is_solved(recorded):
     """What a single camera sees: limbs foreshortened, most of them off a line all the same."""
     flat = replace(recorded, markers=recorded.markers * [1.0, 1.0, 0.0])

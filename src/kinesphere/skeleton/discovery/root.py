@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from kinesphere.errors import DegenerateMotion
 from kinesphere.skeleton.body import measure_shape
 from kinesphere.skeleton.discovery.forest import Forest, rerooted
@@ -38,7 +40,8 @@ def from_the_root(
         If no body tells where it points.
     """
     forest, points, unit = partition.forest, partition.rigidity.points, partition.unit
-    share = size_share(points * unit)
+    tree = np.concatenate([partition.bodies[body] for body in limb_of])
+    share = size_share(points[:, tree] * unit)  # not of all who are there
     outlier = scaled(limits, share).outlier_mm * 1e-3 / unit
     spread = scaled(limits, share).min_spread_mm * 1e-3 / unit
     torso = [body for limb in TORSO for body, name in limb_of.items() if name == limb]
