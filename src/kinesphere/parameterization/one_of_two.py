@@ -12,10 +12,8 @@ from kinesphere.parameterization.view import JointView
 REPEATED = 2  # phases of each main movement: one alone contradicts nothing, where there are more
 FARTHEST = 30.0  # deg from the body's axis: two measured axes confirm each other, one alone has
 # nothing but the body's beside it; functional hips, lumbar and necks are 3-16° off
-FARTHEST_AT = {
-    "ankle": 45.0
-}  # the body has none for the joint below the ankle, whose axis rises by
-# 42° (Isman & Inman 1969)
+# the body has none for the joint below the ankle, whose axis rises by 42° (Isman & Inman 1969)
+FARTHEST_AT = {"ankle": 45.0}
 
 
 def axis_told(quality: AxesQuality, axes: Array, view: JointView, s: AxesSettings) -> int | None:
