@@ -125,6 +125,19 @@ def test_the_verdict_weighs_motion_against_use_and_expectation(
     assert ("book" in note) == (expected != "determined")
 
 
+def test_a_centre_held_where_it_is_expected_is_not_determined_by_what_motion_would_tell():
+    data, prior = np.diag([0.002, 0.002, 0.015]) ** 2, np.diag([1.0, 1.0, 100.0]) / 0.07**2
+    held = np.diag([0.002, 0.002, 0.07]) ** 2  # along the third the expectation held, and errs
+    hip = JointModel("left_knee", "left_thigh", "left_shank")
+    told = [
+        verdict_on(MeasuredJoint(hip, fit, np.zeros(3), 0.07, "book"), 1.0, SkeletonSettings())
+        for fit in (CentreFit(np.zeros(3), 1e-3, data, prior / 100, one, 9) for one in (data, held))
+    ]
+    assert told[0][0] == "determined"
+    assert told[1][0] == "hinge"
+    assert "± 70 mm" in told[1][1]
+
+
 def test_a_centre_drawn_away_is_not_said_to_be_where_it_was_expected():
     data, prior = np.diag([0.0003, 0.0009, 0.09]), np.eye(3) / 0.05**2
     fit = CentreFit(np.array([0.2, 0.0, 0.0]), 1e-3, data, prior, np.linalg.inv(prior), 9)

@@ -63,7 +63,9 @@ def verdict_on(
     inflate = max(1.0, (VERDICT_NOISE / max(fit.noise, 1e-9)) ** 2)
     variances = np.linalg.eigvalsh(fit.data_covariance)
     known = variances < ROUNDING * variances[-1]  # beside what is open, nothing but rounding
-    deviations = np.sqrt(inflate * np.where(known, 0.0, variances))
+    by_motion = inflate * np.where(known, 0.0, variances)
+    # a centre held where it is expected is off by what that is off, whatever the motion would tell
+    deviations = np.sqrt(np.maximum(by_motion, np.linalg.eigvalsh(fit.covariance)))
     # open: worse known than is useful, or known better from the expectation than from the motion
     told = np.linalg.eigvals(fit.data_covariance @ fit.prior).real
     weak = max(int((deviations > settings.undetermined_mm * 1e-3).sum()), int((told > 1).sum()))
