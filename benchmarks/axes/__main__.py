@@ -16,6 +16,7 @@ from benchmarks.axes import (
     filters,
     floor,
     free_motion,
+    free_served,
     halves_alone,
     held,
     normalization,
@@ -125,6 +126,7 @@ SECTIONS: Mapping[str, Callable[[Run, Path], dict[str, Any]]] = {
     "free": lambda run, _: {
         "free": free_motion.summary(run("free motion", free_motion.run, free_motion.TASKS))
     },
+    "served": free_served.section,
     "floor": lambda run, _: {
         "floor": floor.summary(run("floor of free motion", floor.run, floor.TASKS))
     },
