@@ -132,8 +132,8 @@ def _check_motion(rigidity: Rigidity, unit: float) -> None:
         raise DegenerateMotion(
             "no markers keep their distances (they wander by "
             f"{rigidity.most * unit * 1e3:.1f} mm, by {rigidity.noise * unit * 1e3:.1f} mm even "
-            "between the steadiest neighbours): nothing rides on one body; look for swapped labels "
-            "and for missing markers written as a position, or give a model"
+            "between the steadiest neighbours): nothing rides on one body; look for markers that "
+            "change places, and for missing ones written as positions"
         )
     if way <= STILL * rigidity.noise or (rigidity.is_one_body and way < ALL_ONE):
         raise DegenerateMotion(
