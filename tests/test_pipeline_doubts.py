@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinesphere.data import Step
-from kinesphere.errors import BadRecording
+from kinesphere.data import Recording, Step
+from kinesphere.errors import BadRecording, DegenerateMotion
 from kinesphere.pipeline import settings_from, solve
+from kinesphere.pipeline.doubts import with_checks
 from kinesphere.pipeline.motion_alone import _with_names_doubted
 from kinesphere.synthetic import make_performance
 
@@ -42,6 +43,51 @@ def test_what_checks_find_is_among_the_warnings(performance, solution):
     assert [step.name for step in same.history].count("checks") == 1
     labels = [performance.recording.labels[i] for i in (5, 6)]
     assert any(all(label in warning for label in labels) for warning in same.warnings)
+
+
+def bare(recording, share):
+    """Return a recording without labels, with a share of its positions written as zero."""
+    rng, markers = np.random.default_rng(1), recording.markers.copy()
+    markers[rng.random(markers.shape[:2]) < share] = 0
+    labels = tuple(f"*{c}" for c in range(recording.n_markers))
+    return replace(recording, markers=markers, labels=labels)
+
+
+def test_zeros_are_named_before_motion_alone_fails_on_them(performance):
+    zeros = bare(performance.recording, 0.3)
+    with pytest.raises(DegenerateMotion, match=r"^41 markers are exactly at the origin in .*: "
+                       r"export missing markers as missing .*; as it is, ") as told:  # fmt: skip
+        solve(zeros, "none")
+    assert "hardly move" not in str(told.value)
+    assert "no markers keep their distances" in str(told.value)
+
+
+def test_motion_alone_fails_without_a_word_of_zeros_where_there_are_none(performance):
+    still = replace(
+        bare(performance.recording, 0.0),
+        markers=np.repeat(performance.recording.markers[:1], 50, axis=0),
+    )
+    with pytest.raises(DegenerateMotion, match=r"^the markers hardly move"):
+        solve(still, "none")
+
+
+def test_zeros_of_unlabelled_trajectories_are_one_warning(performance):
+    told = with_checks(bare(performance.recording, 0.02)).history[-1]
+    (line,) = told.warnings
+    assert line.startswith("41 markers are exactly at the origin in ")
+    assert len(told.findings["found"]) == 41
+
+
+def test_fragments_of_a_raw_stream_are_one_line_of_gaps(performance):
+    recording = performance.recording
+    n = recording.n_frames
+    pieces = np.full((n, 4 * recording.n_markers, 3), np.nan)
+    for k in range(4):
+        at = slice(k * n // 4, (k + 1) * n // 4)
+        pieces[at, k :: 4] = recording.markers[at]  # fmt: skip
+    raw = Recording(pieces, tuple(f"*{c}" for c in range(pieces.shape[1])), recording.rate)
+    (line,) = with_checks(raw).history[-1].warnings
+    assert line.startswith("164 markers are missing in 7")
 
 
 def test_a_window_beyond_the_end_is_said(performance, solution):

@@ -68,10 +68,36 @@ def test_a_marker_never_seen(clean):
 
 
 def test_missing_written_as_zero(clean):
-    found = check_recording(spoiled(clean, "RELB", slice(12, 17), 0.0))
-    assert {f.rule for f in found} == {"at-zero", "jump"}  # leaping there and back is a jump, too
-    zero = next(f for f in found if f.rule == "at-zero")
-    assert (zero.markers, zero.frame, dict(zero.numbers)["frames"]) == (("RELB",), FIRST + 12, 5)
+    zero = only(check_recording(spoiled(clean, "RELB", slice(12, 17), 0.0)))
+    assert (zero.rule, zero.markers, zero.frame) == ("at-zero", ("RELB",), FIRST + 12)
+    assert dict(zero.numbers) == {"frames": 5, "zero_share": round(5 / 47, 4)}
+
+
+@pytest.mark.parametrize("all_of_them", [False, True])
+def test_zeros_are_told_of_unlabelled_points(clean, all_of_them):
+    labels = tuple(
+        f"A:*{c}" if all_of_them or label == "RELB" else label
+        for c, label in enumerate(clean.labels)
+    )
+    zero = only(check_recording(replace(spoiled(clean, "RELB", slice(12, 17), 0.0), labels=labels)))
+    at = f"A:*{clean.labels.index('RELB')}"
+    assert (zero.rule, zero.markers, zero.frame) == ("at-zero", (at,), FIRST + 12)
+
+
+def test_one_coordinate_at_zero_is_a_place(clean):
+    markers = clean.markers.copy()
+    column = clean.labels.index("RELB")
+    markers[12, column, :2] = 0.0
+    rules = {f.rule for f in check_recording(replace(clean, markers=markers))}
+    assert "at-zero" not in rules
+    assert "jump" in rules
+
+
+def test_a_jump_beside_zeros_is_still_a_jump(clean):
+    jump = spoiled(clean, "LWRA", slice(30, 31), [5.0, 5.0, 5.0])
+    found = check_recording(spoiled(jump, "LWRA", slice(12, 14), 0.0))
+    assert [f.rule for f in found] == ["at-zero", "jump"]
+    assert found[1].frame == FIRST + 30
 
 
 def test_a_marker_that_never_moves(clean):
@@ -170,6 +196,28 @@ def test_unlabelled_points_may_come_and_go(clean):
     labels = tuple("*7" if label == "LTOE" else label for label in clean.labels)
     ghost = replace(spoiled(clean, "LTOE", slice(10, 41), np.nan), labels=labels)
     assert check_recording(ghost) == ()
+
+
+def test_where_nothing_is_labelled_gaps_of_what_is_no_reflection_are_told(clean):
+    slow = replace(clean, rate=20.0)
+    toe, heel = (clean.labels.index(label) for label in ("LTOE", "LHEE"))
+    gone = spoiled(slow, "LTOE", slice(10, 41), np.nan)
+    blinks = spoiled(gone, "LHEE", slice(3, None), np.nan)  # three frames: a reflection
+    named = {f.markers for f in check_recording(blinks)}
+    assert named == {("LTOE",), ("LHEE",)}
+    bare = replace(blinks, labels=tuple(f"*{c}" for c in range(clean.n_markers)))
+    found = only(check_recording(bare))
+    assert (found.rule, found.markers, found.frame) == ("gap", (f"*{toe}",), FIRST + 10)
+    assert f"*{heel}" not in found.what
+
+
+def test_unlabelled_frames_without_anybody_are_those_without_a_point(clean):
+    markers = clean.markers.copy()
+    markers[20:30] = np.nan
+    bare = tuple(f"*{c}" for c in range(clean.n_markers))
+    found = only(check_recording(replace(clean, markers=markers, labels=bare)))
+    assert (found.rule, found.frame) == ("empty-frames", FIRST + 20)
+    assert found.what.startswith("no marker is seen in 21.3%")
 
 
 @pytest.mark.parametrize(

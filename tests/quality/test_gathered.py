@@ -1,4 +1,4 @@
-"""Gaps of many markers are one line for a person, and stay one each for a machine."""
+"""Gaps, and zeros, of many markers are one line for a person, and one each for a machine."""
 
 from dataclasses import replace
 
@@ -55,3 +55,28 @@ def test_a_solution_warns_once_of_many_gaps_and_holds_the_list():
     assert all(row["missing_share"] > 0.59 for row in step.findings["missing"].values())
     assert sum(f["rule"] == "gap" for f in step.findings["found"]) == 30
     assert sum(f.rule == "gap" for f in check_recording(recording)) == 30
+
+
+def test_zeros_of_many_markers_are_one_line_with_the_worst():
+    """Alone, one is told as it is; gaps beside it stay what they are."""
+    performance = make_performance(np.random.default_rng(0), rate=50, calibration_s=4, free_s=2)
+    recording = replace(performance.recording, first_frame=7)
+    n, markers = recording.n_frames, recording.markers.copy()
+    markers[5:8, 3] = 0
+    before = check_recording(recording)  # whoever moves this fast jumps
+    one = check_recording(replace(recording, markers=markers))
+    assert gathered(one) == one
+    markers[4:20, 11] = 0
+    markers[: int(0.6 * n), 20] = np.nan
+    found = check_recording(replace(recording, markers=markers))
+    rules = [f.rule for f in found]
+    assert (rules.count("at-zero"), rules.count("gap")) == (2, 1)
+    assert rules.count("jump") <= [f.rule for f in before].count("jump")
+    zeros, gap = (f for f in gathered(found) if f.rule in ("at-zero", "gap"))
+    assert zeros.what == (
+        f"2 markers are exactly at the origin in {3 / n:.1%} to {16 / n:.1%} of the frames, "
+        f"19 positions from frame 11 on, most {recording.labels[11]}: likely missing, written as "
+        "zero"
+    )
+    assert (zeros.markers, zeros.frame) == ((recording.labels[3], recording.labels[11]), 11)
+    assert gap.markers == (recording.labels[20],)

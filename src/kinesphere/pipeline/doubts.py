@@ -7,8 +7,8 @@ import numpy as np
 
 from kinesphere import __version__
 from kinesphere.data import Json, Motion, Recording, Skeleton, Step
-from kinesphere.errors import BadRecording
-from kinesphere.quality import Finding, check_recording, gathered
+from kinesphere.errors import BadRecording, KinesphereError
+from kinesphere.quality import Finding, check_at_zero, check_recording, gathered
 
 IMPOSSIBLE = (0.1, 10.0)
 """m from feet to head: beyond, the unit is wrong and nothing else can be right."""
@@ -40,6 +40,15 @@ def with_checks(recording: Recording) -> Recording:
         version=__version__,
     )
     return replace(recording, history=(*recording.history, step))
+
+
+def why_it_fails(recording: Recording, failed: KinesphereError) -> KinesphereError:
+    """Return an error that names zeros first, where the recording has them; else the same one."""
+    zeros = gathered(tuple(check_at_zero(recording)))
+    if not zeros:
+        return failed
+    told = f"{zeros[0].what}: {zeros[0].remedy}; as it is, {failed}"
+    return type(failed)(told)
 
 
 def _missing(found: Sequence[Finding]) -> dict[str, Json]:

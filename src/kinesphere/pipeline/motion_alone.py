@@ -9,6 +9,7 @@ from kinesphere.labelling import find_subjects
 from kinesphere.normalization import Facing, NormalizationSettings, normalize
 from kinesphere.normalization.doubts import LYING
 from kinesphere.pipeline.choice import why_no_model
+from kinesphere.pipeline.doubts import why_it_fails
 from kinesphere.skeleton import DiscoverySettings, SkeletonSettings, discover
 
 FRONTS: tuple[Facing, ...] = ("+x", "+z", "+y")
@@ -36,11 +37,15 @@ def discovered(
     Raises
     ------
     BadRecording, DegenerateMotion
-        As `kinesphere.skeleton.discover` does; and for a subject that no label names.
+        As `kinesphere.skeleton.discover` does, zeros that may be why named first; and for a
+        subject that no label names.
     """
     if subject is not None:
         recording = _of_subject(recording, subject)
-    found = discover(recording, settings, skeleton)
+    try:
+        found = discover(recording, settings, skeleton)
+    except (BadRecording, DegenerateMotion) as failed:
+        raise why_it_fails(recording, failed) from failed
     step = found.step
     if not asked:
         step = replace(step, warnings=(why_no_model(recording, subject), *step.warnings))

@@ -12,6 +12,7 @@ import numpy as np
 
 from kinesphere.data import Array, Recording, TopologicalModel
 from kinesphere.geometry.even_frames import every_nth
+from kinesphere.geometry.lifetimes import GHOST, worth_grouping
 from kinesphere.geometry.vectors import is_seen, lengths
 
 HEAD = (
@@ -126,6 +127,16 @@ def _named_axis(body: Body) -> Array | None:
 def labelled_columns(recording: Recording) -> list[int]:
     """Return the columns of all points that somebody labelled."""
     return [c for c, label in enumerate(recording.labels) if label.rpartition(":")[2][:1] != "*"]
+
+
+def judged_columns(recording: Recording) -> list[int]:
+    """Return the columns whose gaps matter: labelled ones; where there are none, long-lived ones.
+
+    Without labels motion alone tells the bodies, from every marker that is no reflection.
+    """
+    if labelled := labelled_columns(recording):
+        return labelled
+    return np.flatnonzero(worth_grouping(recording.seen, recording.rate, GHOST)).tolist()
 
 
 def mean_seen(points: Array) -> Array:

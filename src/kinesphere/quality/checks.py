@@ -6,6 +6,7 @@ import numpy as np
 
 from kinesphere.data import Recording
 from kinesphere.geometry.vectors import lengths
+from kinesphere.quality.at_zero import check_at_zero, without_zeros
 from kinesphere.quality.body import (
     ENOUGH_FRAMES,
     HEAD,
@@ -19,7 +20,6 @@ from kinesphere.quality.body import (
 )
 from kinesphere.quality.findings import Finding
 from kinesphere.quality.marker_checks import (
-    check_at_zero,
     check_coincident,
     check_constant,
     check_far,
@@ -38,8 +38,9 @@ SCENE = (0.01, 50.0)
 def check_recording(recording: Recording) -> tuple[Finding, ...]:
     """Return everything that looks wrong, worst first; empty where nothing does.
 
-    Positions are taken to be in metres. Unlabelled points are not looked at one by one: they come
-    and go by nature. Frames are named in the file's own count.
+    Positions are taken to be in metres. Unlabelled points come and go by nature: looked at are
+    their zeros and, where nothing is labelled, gaps of those that live long. Frames are named in
+    the file's own count.
     """
     if recording.n_frames == 0 or recording.n_markers == 0:
         kind = "frames" if recording.n_frames == 0 else "markers"
@@ -55,20 +56,21 @@ def check_recording(recording: Recording) -> tuple[Finding, ...]:
                 "reconstruct the trial again, or export another one",
             ),
         )
-    rules: Iterable[Callable[[Recording], Iterator[Finding]]] = (
-        _one_frame,
-        _unit,
-        check_far,
-        check_never_seen,
-        check_at_zero,
-        check_constant,
-        check_coincident,
-        check_jumps,
-        check_swaps,
-        _empty_frames,
-        check_gaps,
+    apart = without_zeros(recording)  # what a zero looks like besides is not told again
+    rules: Iterable[tuple[Callable[[Recording], Iterator[Finding]], Recording]] = (
+        (_one_frame, recording),
+        (_unit, recording),
+        (check_far, recording),
+        (check_never_seen, recording),
+        (check_at_zero, recording),
+        (check_constant, recording),
+        (check_coincident, apart),
+        (check_jumps, apart),
+        (check_swaps, apart),
+        (_empty_frames, recording),
+        (check_gaps, recording),
     )
-    found = [finding for rule in rules for finding in rule(recording)]
+    found = [finding for rule, judged in rules for finding in rule(judged)]
     order = ("error", "warning", "note")
     return tuple(sorted(found, key=lambda finding: order.index(finding.severity)))
 
@@ -124,13 +126,15 @@ def _height(body: Body) -> float:
 
 
 def _empty_frames(recording: Recording) -> Iterator[Finding]:
-    nobody = ~recording.seen[:, labelled_columns(recording)].any(axis=1)
+    labelled = labelled_columns(recording)
+    seen = recording.seen[:, labelled] if labelled else recording.seen
+    nobody, who = ~seen.any(axis=1), "labelled marker" if labelled else "marker"
     if nobody.any():
         frame = recording.first_frame + int(nobody.argmax())
         yield Finding(
             "empty-frames",
             "note",
-            f"no labelled marker is seen in {nobody.mean():.1%} of the frames, first in {frame}",
+            f"no {who} is seen in {nobody.mean():.1%} of the frames, first in {frame}",
             "cut the recording to where the person is in view",
             frame=frame,
             numbers=(("empty_share", round(float(nobody.mean()), 4)),),

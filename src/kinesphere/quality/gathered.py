@@ -1,42 +1,67 @@
 """Findings as a person reads them: what many markers have alike is one line."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
+from kinesphere.quality.at_zero import AT_ZERO
 from kinesphere.quality.findings import Finding
-
-GATHERED = "gap"
-"""Rule whose findings are gathered: reconstructions in pieces have one for nearly every marker."""
 
 
 def gathered(findings: Sequence[Finding]) -> tuple[Finding, ...]:
-    """Return the findings with gaps of one severity as one, in the place of the first.
+    """Return the findings with gaps, and zeros, of one severity as one, in the place of the first.
 
     Markers and figures of each stay with the findings given.
     """
     told: list[Finding] = []
-    done: set[str] = set()
+    done: set[tuple[str, str]] = set()
     for finding in findings:
-        alike = [f for f in findings if f.rule == GATHERED and f.severity == finding.severity]
-        if finding.rule != GATHERED or len(alike) == 1:
+        kind = (finding.rule, finding.severity)
+        alike = [f for f in findings if (f.rule, f.severity) == kind]
+        if finding.rule not in GATHERED or len(alike) == 1:
             told.append(finding)
-        elif finding.severity not in done:
-            done.add(finding.severity)
-            told.append(_one(alike))
+        elif kind not in done:
+            done.add(kind)
+            told.append(GATHERED[finding.rule](alike))
     return tuple(told)
 
 
-def _one(alike: Sequence[Finding]) -> Finding:
+def _gaps(alike: Sequence[Finding]) -> Finding:
     shares = {f.markers[0]: dict(f.numbers)["missing_share"] for f in alike}
     longest = {f.markers[0]: dict(f.numbers)["longest_s"] for f in alike}
     most, last = max(shares, key=lambda m: shares[m]), max(longest, key=lambda m: longest[m])
-    low, high = f"{min(shares.values()):.1%}", f"{max(shares.values()):.1%}"
-    share = high if low == high else f"{low} to {high}"
     return Finding(
-        GATHERED,
+        "gap",
         alike[0].severity,
-        f"{len(alike)} markers are missing in {share} of the frames, most {most}; the longest gap "
-        f"is {last}'s, {longest[last]:.2f} s",
+        f"{len(alike)} markers are missing in {_from_to(shares)} of the frames, most {most}; the "
+        f"longest gap is {last}'s, {longest[last]:.2f} s",
         "fill them where the trial is reconstructed; meanwhile the limbs' other markers must do",
         markers=tuple(shares),
         numbers=(("markers", len(alike)),),
     )
+
+
+def _zeros(alike: Sequence[Finding]) -> Finding:
+    shares = {f.markers[0]: dict(f.numbers)["zero_share"] for f in alike}
+    samples = int(sum(dict(f.numbers)["frames"] for f in alike))
+    frames = [f.frame for f in alike if f.frame is not None]
+    most = max(alike, key=lambda f: dict(f.numbers)["frames"])
+    return Finding(
+        AT_ZERO,
+        alike[0].severity,
+        f"{len(alike)} markers are exactly at the origin in {_from_to(shares)} of the frames, "
+        f"{samples:,} positions from frame {min(frames)} on, most {most.markers[0]}: likely "
+        "missing, written as zero",
+        alike[0].remedy,
+        markers=tuple(shares),
+        frame=min(frames),
+        numbers=(("markers", len(alike)), ("positions", samples)),
+    )
+
+
+def _from_to(shares: Mapping[str, float]) -> str:
+    low, high = f"{min(shares.values()):.1%}", f"{max(shares.values()):.1%}"
+    return high if low == high else f"{low} to {high}"
+
+
+GATHERED: Mapping[str, Callable[[Sequence[Finding]], Finding]] = {"gap": _gaps, AT_ZERO: _zeros}
+"""Rules that are gathered: reconstructions in pieces, and exports without a sign for what is
+missing, have one finding for nearly every marker."""

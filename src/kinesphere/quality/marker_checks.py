@@ -1,4 +1,4 @@
-"""What is wrong with single markers: never seen, at zero, stuck, copied, jumping, missing."""
+"""What is wrong with single markers: never seen, stuck, copied, jumping, missing."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,7 @@ import numpy as np
 from kinesphere.data import Array, Recording
 from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.vectors import is_seen, lengths
-from kinesphere.quality.body import labelled_columns, thinned
+from kinesphere.quality.body import judged_columns, labelled_columns, thinned
 from kinesphere.quality.findings import Finding
 from kinesphere.quality.gaps import runs
 
@@ -58,24 +58,6 @@ def check_far(recording: Recording) -> Iterator[Finding]:
             markers=(recording.labels[c],),
             frame=recording.first_frame + frame,
         )
-
-
-def check_at_zero(recording: Recording) -> Iterator[Finding]:
-    """Find markers at the exact origin: missing ones that some exporters write as zero."""
-    for c in labelled_columns(recording):
-        zero = recording.markers[:, c, 0] == 0
-        if zero.any() and (zero := zero & (recording.markers[:, c, 1:] == 0).all(axis=1)).any():
-            n, first = int(zero.sum()), int(zero.argmax())
-            yield Finding(
-                "at-zero",
-                "warning",
-                f"{recording.labels[c]} is exactly at the origin in {n} frames, from frame "
-                f"{recording.first_frame + first} on: likely missing, written as zero",
-                "export missing markers as missing (residual -1 in C3D, blank in TRC)",
-                markers=(recording.labels[c],),
-                frame=recording.first_frame + first,
-                numbers=(("frames", n),),
-            )
 
 
 def check_constant(recording: Recording) -> Iterator[Finding]:
@@ -159,8 +141,8 @@ def check_jumps(recording: Recording) -> Iterator[Finding]:
 
 def check_gaps(recording: Recording) -> Iterator[Finding]:
     """Find markers that are missing often or for long, while others are seen."""
-    labelled = labelled_columns(recording)
-    seen = recording.seen[:, labelled]
+    judged = judged_columns(recording)
+    seen = recording.seen[:, judged]
     missing = ~seen & seen.any(axis=1, keepdims=True)  # frames without anybody are told once
     if not missing.any():
         return
@@ -174,7 +156,7 @@ def check_gaps(recording: Recording) -> Iterator[Finding]:
         share, seconds = float(shares[i]), float((stop - start)[at] / recording.rate)
         if share < MUCH_MISSING and seconds <= LONG_GAP:
             continue
-        label, frame = recording.labels[labelled[i]], recording.first_frame + int(start[at])
+        label, frame = recording.labels[judged[i]], recording.first_frame + int(start[at])
         yield Finding(
             "gap",
             "warning" if share >= HALF_MISSING else "note",

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from kinesphere.errors import BadRecording, DegenerateMotion
+from kinesphere.geometry.lifetimes import longest_runs, worth_grouping
 from kinesphere.skeleton.discovery.rigidity import (
     MOST_TRIMMED,
-    longest_runs,
     measure_rigidity,
     trimmed_share,
-    worth_grouping,
 )
 
 RATE = 50.0
@@ -143,3 +142,9 @@ def test_what_wanders_little_more_than_noise_is_one_body(rng, moving_bodies, wob
     points, _ = moving_bodies(rng, (6,), noise=noise, n_frames=1000)
     points[:, 3:] += wobble * noise * rng.normal(size=(len(points), 1, 3))
     assert measure_rigidity(points).is_one_body == one
+
+
+def test_markers_that_keep_no_distance_are_not_told_to_move(rng):
+    points = rng.normal(size=(80, 9, 3))
+    with pytest.raises(DegenerateMotion, match="no markers keep their distances"):
+        measure_rigidity(points)

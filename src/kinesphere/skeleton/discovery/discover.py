@@ -11,12 +11,13 @@ from kinesphere.data import (
     settings_as_json,
 )
 from kinesphere.errors import BadRecording
+from kinesphere.geometry.lifetimes import worth_grouping
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
 from kinesphere.skeleton.discovery.copies import find_copies
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
 from kinesphere.skeleton.discovery.names import settled
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
-from kinesphere.skeleton.discovery.rigidity import trimmed_share, worth_grouping
+from kinesphere.skeleton.discovery.rigidity import trimmed_share
 from kinesphere.skeleton.discovery.root import from_the_root
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.discovery.size import PERSON, from_the_middle, subject_size

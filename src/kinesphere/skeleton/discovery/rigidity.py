@@ -1,23 +1,18 @@
-"""Which markers are worth grouping, and how steady the distances between them are."""
+"""How steady the distances between markers are: what rides on one body and what does not."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from kinesphere.data import Array, Mask
+from kinesphere.data import Array
 from kinesphere.errors import BadRecording, DegenerateMotion
 from kinesphere.geometry.pair_distances import pair_distances
 from kinesphere.skeleton.averages import median_seen
 
-LEAST_SHARE = 0.05
-"""Share of the frames in which a marker must be seen to be grouped."""
-MOSTLY = 0.5
-"""Share of the frames from which on no reflection is seen, however short its runs."""
-BLINK = 0.1
-"""Share of a reflection's longest life that a marker may be missing without being gone."""
 LEAST_FRAMES = 10
 """Frames that must show a marker, or two of them together, to say anything."""
+UNSTEADY = 0.05
+"""m, at a person's size: no skin lets neighbours on one limb drift so far apart."""
 STILL = 3.0
 """Where no distance wanders so many times more than the steadiest ones do, nothing has moved."""
 MOST_TRIMMED = 0.05
@@ -65,39 +60,6 @@ class Rigidity:
         return float(np.percentile(known[np.isfinite(known)], 95))
 
 
-def worth_grouping(seen: Mask, rate: float, ghost_s: float) -> Mask:
-    """Return which markers are seen often and long enough, (n_frames, n) → (n,).
-
-    Reflections live for tenths of a second; a body's marker is around at least once for longer,
-    though single frames of it may be missing, or in most of the frames.
-    """
-    n_frames = len(seen)
-    share = seen.sum(axis=0) / max(1, seen.any(axis=1).sum())
-    stretch = min(ghost_s * rate, n_frames / 2)
-    blink = max(1, int(BLINK * ghost_s * rate))
-    around = longest_runs(seen, blink) >= stretch
-    return np.asarray((share >= LEAST_SHARE) & (around | (share >= MOSTLY)))
-
-
-def longest_runs(seen: Mask, bridged: int = 0) -> NDArray[np.intp]:
-    """Return the longest run of frames that show each marker, (n_frames, n) → (n,).
-
-    Parameters
-    ----------
-    seen
-    bridged
-        Up to so many missing frames do not end a run, and count.
-    """
-    longest = np.zeros(seen.shape[1], dtype=np.intp)
-    for m, column in enumerate(seen.T):
-        frames = np.flatnonzero(column)
-        if len(frames):
-            breaks = np.flatnonzero(np.diff(frames) > bridged + 1)
-            first, last = np.r_[0, breaks + 1], np.r_[breaks, len(frames) - 1]
-            longest[m] = (frames[last] - frames[first]).max() + 1
-    return longest
-
-
 def trimmed_share(seconds: float, ghost_s: float) -> float:
     """Return which share of the frames a reflection's life may be, 5 % at most.
 
@@ -124,7 +86,8 @@ def measure_rigidity(points: Array, unit: float = 1.0, *, trim: float = MOST_TRI
     BadRecording
         If there are fewer than three markers or ten frames.
     DegenerateMotion
-        If the markers hardly move relative to each other, nor as a whole.
+        If the markers hardly move relative to each other, nor as a whole, or none keep their
+        distances.
     """
     n_frames, n = points.shape[:2]
     if n < 3 or n_frames < LEAST_FRAMES:
@@ -165,6 +128,13 @@ def resolution(points: Array, mean: Array) -> float:
 
 def _check_motion(rigidity: Rigidity, unit: float) -> None:
     way = travels(rigidity.points)
+    if way <= STILL * rigidity.noise and rigidity.noise > UNSTEADY:
+        raise DegenerateMotion(
+            "no markers keep their distances (they wander by "
+            f"{rigidity.most * unit * 1e3:.1f} mm, by {rigidity.noise * unit * 1e3:.1f} mm even "
+            "between the steadiest neighbours): nothing rides on one body; look for markers that "
+            "change places, and for missing ones written as positions"
+        )
     if way <= STILL * rigidity.noise or (rigidity.is_one_body and way < ALL_ONE):
         raise DegenerateMotion(
             "the markers hardly move relative to each other (distances wander by "

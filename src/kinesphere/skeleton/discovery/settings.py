@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from kinesphere.data import check_settings, setting
+from kinesphere.geometry.lifetimes import GHOST
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class DiscoverySettings:
         "markers loses limbs",
     )
     ghost_s: float = setting(
-        0.5,
+        GHOST,
         "a marker never around for so long, nor in half of the frames, is a reflection; breaks up "
         "to a tenth of it do not count. So much of the recording, 5 % at most, is left out of "
         "every distance at either end",
