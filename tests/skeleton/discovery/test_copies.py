@@ -68,3 +68,37 @@ def test_two_that_meet_for_less_than_half_of_the_time_are_no_copies(rng):
     markers = rng.normal(size=(400, 3, 3))
     markers[:150, 2] = markers[:150, 1]
     assert find_copies(markers, np.arange(3)) == {}
+
+
+def test_one_marker_in_two_pieces_that_overlap_is_no_copy(rng):
+    markers = rng.normal(size=(400, 3, 3))
+    markers[:, 2] = markers[:, 1]
+    markers[210:, 1], markers[:190, 2] = np.nan, np.nan
+    assert find_copies(markers, np.arange(3)) == {}
+
+
+@pytest.mark.parametrize(("alone", "copies"), [(9, {2: 1}), (11, {})])
+def test_a_copy_is_seen_hardly_anywhere_but_where_the_other_is(rng, alone, copies):
+    """Of its hundred frames so many show only it."""
+    markers = rng.normal(size=(400, 3, 3))
+    markers[:, 2] = markers[:, 1]
+    markers[100:, 2], markers[:alone, 1] = np.nan, np.nan
+    assert find_copies(markers, np.arange(3)) == copies
+
+
+def test_pieces_that_overlap_are_markers_of_one_body(recorded):
+    n = recorded.n_frames
+    early, late = np.array(recorded.markers), recorded.markers[:, [7]].copy()
+    early[n // 2 + 20 :, 7], late[: n // 2 - 20] = np.nan, np.nan
+    found = discover(
+        replace(
+            recorded,
+            markers=np.concatenate([early, late], axis=1),
+            labels=(*recorded.labels, "piece"),
+        )
+    )
+    (body,) = (body for body in as_told(found)[0].values() if "*7" in body)
+    assert "piece" in body
+    bodies = {frozenset(body - {"piece"}) for body in as_told(found)[0].values()}
+    assert bodies == {frozenset(body) for body in as_told(discover(recorded))[0].values()}
+    assert found.step.findings["copies"] == {}
