@@ -9,6 +9,7 @@ from kinesphere.labelling import find_subjects
 from kinesphere.normalization import Facing, NormalizationSettings, normalize
 from kinesphere.normalization.doubts import LYING
 from kinesphere.pipeline.choice import why_no_model
+from kinesphere.quality import OrientationSettings, right_handed
 from kinesphere.skeleton import DiscoverySettings, SkeletonSettings, discover
 
 FRONTS: tuple[Facing, ...] = ("+x", "+z", "+y")
@@ -21,6 +22,7 @@ def discovered(
     subject: str | None,
     settings: DiscoverySettings,
     skeleton: SkeletonSettings,
+    orientation: OrientationSettings,
     *,
     asked: bool,
 ) -> tuple[Recording, TopologicalModel]:
@@ -30,6 +32,8 @@ def discovered(
     ----------
     subject
         Only markers whose label has this prefix take part; all, if None.
+    orientation
+        By which the recording is oriented afterwards: sides are told of what comes out of that.
     asked
         True where motion alone was asked for, False where it is for want of a model.
 
@@ -40,7 +44,7 @@ def discovered(
     """
     if subject is not None:
         recording = _of_subject(recording, subject)
-    found = discover(recording, settings, skeleton)
+    found = discover(right_handed(recording, orientation), settings, skeleton)
     step = found.step
     if not asked:
         step = replace(step, warnings=(why_no_model(recording, subject), *step.warnings))
