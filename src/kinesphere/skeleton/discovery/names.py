@@ -158,8 +158,8 @@ def _whole_arms(limbs: Sequence[str]) -> str:
 def _not_named(limbs: Sequence[str]) -> str:
     """Return for a person that limbs keep numbers."""
     told = (
-        f"{', '.join(limbs)} could not be named though the rest is a person: a part of an arm or leg, "
-        "or something held or worn"
+        f"{', '.join(limbs)} could not be named though the rest is a person: a part of an arm "
+        "or leg, or something held or worn"
     )
     return told if limbs else ""
 
