@@ -9,7 +9,7 @@ from numpy.testing import assert_array_equal
 
 from kinesphere.data import JointModel, Recording, Segment, TopologicalModel
 from kinesphere.errors import BadSetting
-from kinesphere.quality import OrientationSettings, orient, world_from_up
+from kinesphere.quality import OrientationSettings, orient, right_handed, world_from_up
 
 UP = np.array([0, 1, 0])
 DIRECTIONS = ("+x", "-x", "+y", "-y", "+z", "-z")
@@ -58,6 +58,18 @@ def test_every_export_comes_back_to_the_same_world(walker, export):
     assert np.linalg.det(back) == 1
     assert_array_equal(back @ UP, UP)
     assert_array_equal(world.markers, file.markers @ world.world_from_file.T)
+
+
+@pytest.mark.parametrize("wanted", ["auto", "yes", "no"])
+@pytest.mark.parametrize("axis", [None, 0, 1, 2])
+def test_what_is_reflected_beforehand_is_what_orienting_reflects(walker, axis, wanted):
+    export = np.diag(np.where(np.arange(3) == axis, -1.0, 1.0))
+    file, settings = exported(walker, export), OrientationSettings(mirrored=wanted)
+    reflected = step(orient(file, None, settings)).findings["mirrored"]
+    assert reflected == (axis is not None if wanted == "auto" else wanted == "yes")
+    assert_array_equal(
+        right_handed(file, settings).markers, file.markers * [1, 1, -1 if reflected else 1]
+    )
 
 
 @pytest.mark.parametrize("export", EXPORTS[::7], ids=[str(i) for i in range(0, 48, 7)])

@@ -79,6 +79,7 @@ def solve(
                 subject,
                 settings.discovery,
                 settings.skeleton,
+                settings.orientation,
                 asked=model == MOTION_ALONE,
             )
         else:

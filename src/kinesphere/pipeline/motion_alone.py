@@ -10,6 +10,7 @@ from kinesphere.normalization import Facing, NormalizationSettings, normalize
 from kinesphere.normalization.doubts import LYING
 from kinesphere.pipeline.choice import why_no_model
 from kinesphere.pipeline.doubts import why_it_fails
+from kinesphere.quality import OrientationSettings, right_handed
 from kinesphere.skeleton import DiscoverySettings, SkeletonSettings, discover
 
 FRONTS: tuple[Facing, ...] = ("+x", "+z", "+y")
@@ -22,6 +23,7 @@ def discovered(
     subject: str | None,
     settings: DiscoverySettings,
     skeleton: SkeletonSettings,
+    orientation: OrientationSettings,
     *,
     asked: bool,
 ) -> tuple[Recording, TopologicalModel]:
@@ -31,6 +33,8 @@ def discovered(
     ----------
     subject
         Only markers whose label has this prefix take part; all, if None.
+    orientation
+        By which the recording is oriented afterwards: sides are told of what comes out of that.
     asked
         True where motion alone was asked for, False where it is for want of a model.
 
@@ -43,7 +47,7 @@ def discovered(
     if subject is not None:
         recording = _of_subject(recording, subject)
     try:
-        found = discover(recording, settings, skeleton)
+        found = discover(right_handed(recording, orientation), settings, skeleton)
     except (BadRecording, DegenerateMotion) as failed:
         raise why_it_fails(recording, failed) from failed
     step = found.step

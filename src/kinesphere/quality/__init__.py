@@ -9,3 +9,4 @@ from kinesphere.quality.gaps import find_gaps as find_gaps
 from kinesphere.quality.gathered import gathered as gathered
 from kinesphere.quality.orientation import OrientationSettings as OrientationSettings
 from kinesphere.quality.orientation import orient as orient
+from kinesphere.quality.orientation import right_handed as right_handed

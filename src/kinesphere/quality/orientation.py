@@ -102,6 +102,19 @@ def orient(
     )
 
 
+def right_handed(recording: Recording, settings: OrientationSettings | None = None) -> Recording:
+    """Return the recording, reflected along z where `orient` will say that it is a mirror image.
+
+    For what has to tell left from right before a recording is oriented.
+    """
+    settings = settings or OrientationSettings()
+    bodies = find_bodies(thinned(recording, ENOUGH_FRAMES))
+    mirrored, _ = _judge_mirror(find_chirality(bodies), settings.mirrored)
+    if not mirrored:
+        return recording
+    return replace(recording, markers=_turned(recording.markers, np.diag([1.0, 1.0, -1.0])))
+
+
 def _turned(markers: Array, turn: Array) -> Array:
     """Permute and negate coordinates: exact, where a matrix product would turn -0 and NaN."""
     source = np.abs(turn).argmax(axis=1)

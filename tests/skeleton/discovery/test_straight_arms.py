@@ -55,18 +55,33 @@ def test_an_arm_whose_elbow_stays_straight_is_an_upper_arm_and_that_is_said(perf
     assert all(joints[arm] == arm.replace("upper_arm", "shoulder") for arm in stiff)
 
 
-def test_an_upper_arm_without_a_forearm_is_one_and_nothing_is_said(performance):
+def without_forearms(performance):
     recording = performance.recording
     owner = {label: limb.name for limb in performance.skeleton.limbs for label in limb.markers}
     kept = [c for c, label in enumerate(recording.labels) if "forearm" not in owner[label]]
-    found = found_of(
-        replace(
-            recording,
-            markers=np.ascontiguousarray(recording.markers[:, kept]),
-            labels=tuple(recording.labels[c] for c in kept),
-        )
+    return replace(
+        recording,
+        markers=np.ascontiguousarray(recording.markers[:, kept]),
+        labels=tuple(recording.labels[c] for c in kept),
     )
+
+
+def test_an_upper_arm_without_a_forearm_is_one_and_nothing_is_said(performance):
+    found = found_of(without_forearms(performance))
     named = limbs(found, performance)
     assert all(own == {limb} for limb, own in named.items())
     assert {f"{side}_upper_arm" for side in SIDES} <= set(named)
     assert not [doubt for doubt in found.step.warnings if "no bend shows" in doubt]
+    assert not [doubt for doubt in found.step.warnings if "could not be named" in doubt]
+
+
+@pytest.mark.parametrize("seed", [621, 623])
+def test_an_arm_that_cannot_be_named_is_told(seed):
+    """Upper arms of a length between; 623 has one that is not even taken for an arm."""
+    rng = np.random.default_rng(seed)
+    performance = make_performance(rng, rate=25, calibration_s=40, free_s=20)
+    found = found_of(without_forearms(performance))
+    numbers = [limb for limb in limbs(found, performance) if limb.startswith("limb_")]
+    assert numbers
+    (told,) = (doubt for doubt in found.step.warnings if "could not be named" in doubt)
+    assert ", ".join(numbers) in told

@@ -1,11 +1,14 @@
-"""Trajectories that are there twice: one marker under two numbers."""
+"""One marker under two numbers: trajectories that are there twice, and pieces that overlap."""
+
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
-from kinesphere.data import Array
+from kinesphere.data import Array, TopologicalModel
 from kinesphere.geometry.even_frames import even_frames
 from kinesphere.skeleton.averages import median_seen
 
@@ -14,12 +17,17 @@ BESIDE = 0.003
 are 6 mm thick and more; of the recordings at hand no two are nearer than 7 mm."""
 FRAMES = 100
 """Frames that are looked at, spread over the recording."""
+TOGETHER = 0.9
+"""Least share of the frames of the one seen less that show both. One marker in two pieces that
+overlap for some frames is no copy: either piece shows what the other does not."""
 
 
-def find_copies(markers: Array, order: NDArray[np.intp]) -> dict[int, int]:
-    """Return which trajectories are copies, and of which other one.
+def find_copies(markers: Array, order: NDArray[np.intp]) -> tuple[dict[int, int], dict[int, int]]:
+    """Return which trajectories are copies, and which are pieces, and of which other one.
 
-    Of each group the one that is seen most often is kept, of several the first in the file.
+    A copy is seen hardly anywhere but where the other one is. A piece meets the other one where
+    both are seen, and shows the marker elsewhere too. Of each group the one that is seen most often
+    is kept, of several the first in the file.
 
     Parameters
     ----------
@@ -30,7 +38,8 @@ def find_copies(markers: Array, order: NDArray[np.intp]) -> dict[int, int]:
 
     Returns
     -------
-    Column of a copy → column that is kept.
+    Column of a copy → column that is kept, which may be a piece; column of a piece → column that it
+    continues.
     """
     few = markers[even_frames(len(markers), FRAMES)]
     n = few.shape[1]
@@ -39,14 +48,63 @@ def find_copies(markers: Array, order: NDArray[np.intp]) -> dict[int, int]:
         usual = median_seen(np.linalg.norm(few - few[:, i : i + 1], axis=2))
         apart[i] = np.nan_to_num(usual, nan=np.inf)
     if n < 2 or (apart + np.diag(np.full(n, np.inf)) > BESIDE).all():
-        return {}
+        return {}, {}
     far = np.where(np.isfinite(apart), apart, 1e3)
     np.fill_diagonal(far, 0.0)
     group = fcluster(linkage(squareform(far, checks=False), "complete"), BESIDE, "distance")
-    seen = np.isfinite(markers).all(axis=2).sum(axis=0)
+    seen = np.asarray(np.isfinite(markers).all(axis=2), dtype=np.float64)
+    together = seen.T @ seen  # numbers of frames: exact
+    often = np.diag(together)
     copies: dict[int, int] = {}
+    pieces: dict[int, int] = {}
     for g in np.unique(group):
-        members = np.flatnonzero(group == g)
-        kept = min((int(m) for m in members), key=lambda m: (-seen[m], order[m]))
-        copies |= {int(m): kept for m in members if m != kept}
-    return dict(sorted(copies.items()))
+        members = (int(m) for m in np.flatnonzero(group == g))
+        first, *others = sorted(members, key=lambda m: (-often[m], order[m]))
+        kept = [first]
+        for m in others:
+            of = next((k for k in kept if together[m, k] >= TOGETHER * often[m]), None)
+            if of is not None:
+                copies[m] = of
+            else:
+                pieces[m] = first
+                kept.append(m)
+    return dict(sorted(copies.items())), dict(sorted(pieces.items()))
+
+
+def with_pieces_joined(markers: Array, pieces: dict[int, int]) -> Array:
+    """Return the trajectories; those that pieces continue show what the pieces do.
+
+    Parameters
+    ----------
+    markers : (n_frames, n, 3) m
+        NaN where not seen.
+    pieces
+        As `find_copies` returns them; they stay as they are.
+    """
+    joined = markers.copy()
+    for piece, whole in pieces.items():
+        joined[:, whole] = np.where(np.isnan(joined[:, whole]), markers[:, piece], joined[:, whole])
+    return joined
+
+
+def with_pieces(
+    model: TopologicalModel, whole_of: dict[str, str], in_file: Sequence[str]
+) -> TopologicalModel:
+    """Return the model with every piece on the limb of the marker that it continues.
+
+    Parameters
+    ----------
+    model
+        Of the kept trajectories.
+    whole_of
+        Label of a piece → label of what it continues.
+    in_file
+        All labels in their order.
+    """
+    segments = []
+    for segment in model.segments:
+        pieces = [piece for piece, whole in whole_of.items() if whole in segment.markers]
+        markers = tuple(sorted((*segment.markers, *pieces), key=in_file.index))
+        segments.append(replace(segment, markers=markers))
+    required = tuple(label for segment in segments for label in segment.markers)
+    return replace(model, segments=tuple(segments), required=required)

@@ -13,7 +13,7 @@ from kinesphere.data import (
 from kinesphere.errors import BadRecording
 from kinesphere.geometry.lifetimes import worth_grouping
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
-from kinesphere.skeleton.discovery.copies import find_copies
+from kinesphere.skeleton.discovery.copies import find_copies, with_pieces, with_pieces_joined
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
 from kinesphere.skeleton.discovery.names import settled
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
@@ -81,10 +81,14 @@ def discover(
     markers = without_spikes(recording.markers[:, columns])
     unit = subject_size(markers) / PERSON
     markers /= unit  # from here on the subject is as large as a person
-    copies = find_copies(markers, columns)
-    alike = {recording.labels[columns[c]]: recording.labels[columns[k]] for c, k in copies.items()}
-    if copies:
-        markers, columns = np.delete(markers, list(copies), 1), np.delete(columns, list(copies))
+    copies, pieces = find_copies(markers, columns)
+    alike, continued = (
+        {recording.labels[columns[c]]: recording.labels[columns[k]] for c, k in pairs.items()}
+        for pairs in (copies, pieces)
+    )
+    if twice := [*copies, *pieces]:
+        markers = np.delete(with_pieces_joined(markers, pieces), twice, axis=1)
+        columns = np.delete(columns, twice)
     points = np.ascontiguousarray(markers[spread_frames(markers, settings.sample_frames)])
     limits = skeleton or SkeletonSettings()
     costs = JointCosts(points, unit)
@@ -102,6 +106,8 @@ def discover(
     names = shaken(settled(names, tree), forest, counted)
     limb_of = {body: names.limbs[body] for body in tree}
     model = tree_model(partition, costs, limb_of, labels, recording.labels)
+    if continued:
+        model = with_pieces(model, continued, recording.labels)
     near = settings.near_mm * 1e-3
     ghosts = [
         label
@@ -112,7 +118,7 @@ def discover(
         name="discovery",
         settings=settings_as_json(settings),
         findings=account_of(partition, labels, ghosts, model, names, limb_of, near)
-        | {"copies": dict(alike)},
+        | {"copies": dict(alike), "pieces": dict(continued)},
         warnings=_told_of_copies(alike)
         + doubts_about(
             partition,

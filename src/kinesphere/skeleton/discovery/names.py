@@ -96,9 +96,14 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     sided = _sided(person, sides)
     given |= {body: limb for body, limb in sided.items() if lone.get(body, "plain")}
     sure = confidence * sides.confidence
-    doubt = _whole_arms([sided[body] for body, kind in lone.items() if kind == "whole"])
+    limbs = numbered(given, tree)
+    doubts = [
+        _whole_arms([sided[body] for body, kind in lone.items() if kind == "whole"]),
+        _not_named([limb for body, limb in limbs.items() if body not in given]),
+    ]
+    doubt = "; ".join(told for told in doubts if told)
     unnamed = frozenset(person.limbs.keys() - given.keys())
-    return Names(numbered(given, tree), sure, account, doubt, person.cost, unnamed, refused)
+    return Names(limbs, sure, account, doubt, person.cost, unnamed, refused)
 
 
 def settled(names: Names, tree: Sequence[int]) -> Names:
@@ -147,6 +152,15 @@ def _sided(person: Person, sides: Sides) -> dict[int, str]:
 def _whole_arms(limbs: Sequence[str]) -> str:
     """Return for a person that upper arms are whole arms."""
     told = f"no bend shows at the elbow of {', '.join(limbs)}: the forearm is on that limb too"
+    return told if limbs else ""
+
+
+def _not_named(limbs: Sequence[str]) -> str:
+    """Return for a person that limbs keep numbers."""
+    told = (
+        f"{', '.join(limbs)} could not be named though the rest is a person: a part of an arm "
+        "or leg, or something held or worn"
+    )
     return told if limbs else ""
 
 
