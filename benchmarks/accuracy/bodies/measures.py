@@ -80,18 +80,10 @@ def _limbs_in(model: TopologicalModel, truth: Mapping[str, str]) -> dict[str, se
 
 
 def wrong_names(model: TopologicalModel, truth: Mapping[str, str]) -> list[str]:
-    """Return the limbs whose name is not that of most of their markers; numbers are no names.
-
-    Nor that of a limb all of whose markers they hold: a whole arm that does not bend is an upper
-    arm, though the forearm has more markers.
-    """
-    names, sizes = true_names(model, truth), Counter(truth.values())
-    own = {s.name: Counter(truth.get(label) for label in s.markers) for s in model.segments}
+    """Return the limbs whose name is not that of most of their markers; numbers are no names."""
+    names = true_names(model, truth)
     return [
         f"{name} is {names[name]}"
         for name in names
-        if not name.startswith("limb_")
-        and names[name]
-        and names[name] != name
-        and not 0 < sizes[name] == own[name][name]
+        if not name.startswith("limb_") and names[name] and names[name] != name
     ]

@@ -26,8 +26,8 @@ Labels are hidden before the run (`*0`, `*1`…); the program gets trajectories 
 *ARI* is the adjusted Rand index of the marker bodies (Hubert & Arabie 1985), 1 where the partition
 is right, over the markers of all trees (`discovery.tree` solves each). A joint is *wrong* if the
 two bodies it joins hold no limbs that meet, in whichever tree. Names count as
-wrong if a body's name is neither that of most of its markers nor that of a limb it holds all the
-markers of; limbs that are only numbered are not named.
+wrong if a body's name is not that of most of its markers; limbs that are only numbered are not
+named.
 
 `discovery.split_ratio` and `discovery.shared_ratio`, what becomes of bodies of one marker, the
 weight of nearness in joint costs, the costs of bodies that are no limb and the limits from which

@@ -94,12 +94,13 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
         if len(arm) == 1
     }
     sided = _sided(person, sides)
-    given |= {body: limb for body, limb in sided.items() if lone.get(body, "plain")}
+    given |= {b: limb for b, limb in sided.items() if lone.get(b, "upper") == "upper"}
     sure = confidence * sides.confidence
     limbs = numbered(given, tree)
+    arms = [body for body, kind in lone.items() if kind == "whole"]
     doubts = [
-        _whole_arms([sided[body] for body, kind in lone.items() if kind == "whole"]),
-        _not_named([limb for body, limb in limbs.items() if body not in given]),
+        *(_whole_arm(limbs[body], sided[body].partition("_")[0]) for body in arms),
+        _not_named([limb for body, limb in limbs.items() if body not in (*given, *arms)]),
     ]
     doubt = "; ".join(told for told in doubts if told)
     unnamed = frozenset(person.limbs.keys() - given.keys())
@@ -149,10 +150,9 @@ def _sided(person: Person, sides: Sides) -> dict[int, str]:
     return given
 
 
-def _whole_arms(limbs: Sequence[str]) -> str:
-    """Return for a person that upper arms are whole arms."""
-    told = f"no bend shows at the elbow of {', '.join(limbs)}: the forearm is on that limb too"
-    return told if limbs else ""
+def _whole_arm(limb: str, side: str) -> str:
+    """Return for a person what a limb is that has no name."""
+    return f"{limb} is the whole {side} arm: no bend shows at its elbow"
 
 
 def _not_named(limbs: Sequence[str]) -> str:
