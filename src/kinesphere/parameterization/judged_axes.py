@@ -7,14 +7,17 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.geometry.even_frames import parted
 from kinesphere.parameterization.anatomy import nominal_axes, room
-from kinesphere.parameterization.angles import two_axis_angles
-from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.hinge import other_reading
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
-from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.confidence import AxesQuality, assess_axes
 from kinesphere.parameterization.doubts import apart, reasons_to_doubt, uncertain
 from kinesphere.parameterization.free_hinge import worse_than_body
+from kinesphere.parameterization.free_pair import (
+    CLOSEST,
+    free_ranges,
+    in_free_motion,
+    too_short,
+)
 from kinesphere.parameterization.halves import (
     LEAST_SHARE,
     Finder,
@@ -24,11 +27,7 @@ from kinesphere.parameterization.halves import (
 )
 from kinesphere.parameterization.one_of_two import axis_told
 from kinesphere.parameterization.samples import JointSamples
-from kinesphere.parameterization.settings import (
-    AngleSettings,
-    AxesSettings,
-    ParameterizationSettings,
-)
+from kinesphere.parameterization.settings import AxesSettings, ParameterizationSettings
 from kinesphere.parameterization.view import JointView, view_halves
 
 COMPARABLE = 0.5  # of the whole arc: a half that moves less far is no judge of the whole
@@ -84,13 +83,18 @@ def judged(
         quality = replace(quality, readings=np.array([other_reading(samples, axes[0])]))
     nominal = nominal_axes(view.name, axes) if view.human else None
     positions = view.samples.positions
+    if free and (short := too_short(samples)):
+        return MovementAxes(axes, quality, (short,))
     if len(axes) < n_axes:
         doubts = [f"only {len(axes)} of {n_axes} main movements is there"]
     else:
         if free:
-            quality = replace(quality, ranges=_free_ranges(view, axes))
-            options = replace(options, smallest_explained=0.0)
+            ranges, beyond = free_ranges(view, axes)
+            quality = replace(quality, ranges=ranges)
+            closest = max(CLOSEST, options.smallest_angle)
+            options = replace(options, smallest_explained=0.0, smallest_angle=closest)
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
+        doubts += [beyond] if free and beyond else []
     if nominal is not None and n_axes == 1 and worse_than_body(axes[0], nominal[0], positions):
         doubts.append("the body frame's axis suits all the movement clearly better")
     pair = n_axes == 2 and not free
@@ -144,23 +148,3 @@ def _remark(quality: AxesQuality, apart_by: Array, told: int | None, options: Ax
     if np.rad2deg(quality.uncertainty[of].max()) > options.largest_uncertainty:
         return uncertain(quality, told)
     return ""
-
-
-def in_free_motion(n_axes: int, options: AxesSettings) -> bool:
-    """Return whether the method needs no main movements."""
-    return options.method == "universal-joint" and n_axes == 2
-
-
-def _free_ranges(view: JointView, axes: Array) -> Array:
-    """Return the ranges of both angles of a joint that moves about its axes at once, (2,) rad."""
-    at = view.calibration
-    angles = two_axis_angles(
-        view.samples.rotations,
-        axes,
-        reference_rotation(view.samples),
-        view.long_axis,
-        view.twist_known[at],
-        AngleSettings(),
-    ).angles[:, :2]
-    low, high = np.percentile(angles, PERCENTILES, axis=0)
-    return np.asarray(high - low)
