@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from kinesphere.errors import BadModel
+from kinesphere.parameterization import judged_axes
 from kinesphere.parameterization.anatomy import body_axes, n_told
 from kinesphere.parameterization.angles import solve_angles
 from kinesphere.parameterization.joint import fit_joint
@@ -96,6 +97,25 @@ def test_one_movement_alone_is_contradicted_by_nothing(rng):
 def test_an_axis_far_from_the_body_is_not_kept_alone(rng):
     view, _ = hip(rng, 40.0, 0.0, off_deg=50.0)
     assert fit_joint(view, SETTINGS).source == "body"
+
+
+@pytest.mark.parametrize(
+    ("apart_deg", "arc_deg", "kept"),
+    [(82.0, 15.0, False), (82.0, 10.0, True), (15.0, 15.0, True)],
+)
+def test_halves_that_move_less_contradict_an_axis_alone(rng, monkeypatch, apart_deg, arc_deg, kept):
+    """They are no judge of two axes that confirm each other: a half may lack a main movement."""
+
+    def contradiction(halves, axes, search):
+        return np.deg2rad([[apart_deg] * len(axes), [arc_deg] * len(axes)])
+
+    monkeypatch.setattr(judged_axes, "contradiction", contradiction)
+    fit = fit_joint(hip(rng, 40.0, 5.0)[0], SETTINGS)  # arcs about flexion of 70°
+    assert fit.half_told == kept
+    assert fit.source == ("movement" if kept else "body")
+    assert kept or "halves of the time put the axis that is told 82° apart" in fit.doubts
+    if apart_deg == 15.0:
+        assert fit.loose == "axes from two halves of the data differ by 15°"
 
 
 def test_whoever_wants_doubtful_axes_gets_both_of_them(rng):

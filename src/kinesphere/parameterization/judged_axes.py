@@ -105,6 +105,12 @@ def judged(
     if not doubts:
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
     told = axis_told(quality, axes, view, options) if doubts and pair else None
+    if told is not None and apart_by[told] > doubtful:
+        # another axis told would speak for it; alone it gives way to halves that are less alike
+        doubts.append(
+            f"halves of the time put the axis that is told {np.rad2deg(apart_by[told]):.0f}° apart"
+        )
+        told = None
     remark = _remark(quality, apart_by, told, settings.axes)
     return MovementAxes(axes, quality, tuple(doubts), remark, told)
 
