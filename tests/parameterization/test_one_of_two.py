@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+from kinesphere.data import Step
 from kinesphere.errors import BadModel
 from kinesphere.parameterization import judged_axes
 from kinesphere.parameterization.anatomy import body_axes, n_told
@@ -14,7 +15,7 @@ from kinesphere.parameterization.angles import solve_angles
 from kinesphere.parameterization.joint import fit_joint
 from kinesphere.parameterization.one_of_two import completed
 from kinesphere.parameterization.report import stage_warnings
-from kinesphere.parameterization.reused import own_or_reused
+from kinesphere.parameterization.reused import own_or_reused, reused_fit
 from kinesphere.parameterization.settings import AxesSettings, ParameterizationSettings
 from kinesphere.parameterization.view import view_joint
 from kinesphere.synthetic import make_performance
@@ -150,6 +151,25 @@ def test_which_axis_is_put_across_is_said(rng):
     said = [w for w in stage_warnings({}, {"left_hip": fit}, "phase-log-pca") if "one of two" in w]
     assert len(said) == 1
     assert "left_hip (axis 1: " in said[0]
+
+
+def test_reused_axes_are_not_doubted_for_what_was_left_out(rng):
+    plain = make_performance(rng, calibration_s=0.0, n_frames=3).skeleton
+    half = replace(plain.joint("left_hip"), axes_assumed=(True, False), axes_source="movement")
+    joints = tuple(half if joint.name == "left_hip" else joint for joint in plain.joints)
+    loose = "axes from two halves of the data differ by 12°"
+    told = {"doubts": ["an axis is 71° off", "an axis is uncertain", loose], "remark": loose}
+    step = Step("parameterization", {}, {"joints": {"left_hip": told}}, (), "0")
+    fit = reused_fit("left_hip", replace(plain, joints=joints, history=(step,)))
+    [said] = [w for w in stage_warnings({}, {"left_hip": fit}, "phase-log-pca") if "reused" in w]
+    assert said.endswith(
+        "left_hip (axis 1: an axis is 71° off; axis 1: an axis is uncertain; axis 2: " + loose + ")"
+    )
+    whole = replace(half, axes_assumed=())
+    joints = tuple(whole if joint.name == "left_hip" else joint for joint in plain.joints)
+    fit = reused_fit("left_hip", replace(plain, joints=joints, history=(step,)))
+    [said] = stage_warnings({}, {"left_hip": fit}, "phase-log-pca")
+    assert "axis 1:" not in said
 
 
 def test_axes_that_a_movement_told_are_counted(rng):

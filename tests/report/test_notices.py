@@ -40,6 +40,12 @@ def test_reasons_are_told_apart_most_common_first():
     ]
 
 
+def test_what_is_said_of_one_axis_is_not_said_of_another():
+    warning = "one is told: left_hip (axis 1: 12° off), right_hip (axis 2: 20° off)"
+    [found] = notices([warning], JOINTS)
+    assert found.reasons == (("axis 1: 12° off", "left hip"), ("axis 2: 20° off", "right hip"))
+
+
 @pytest.mark.parametrize(
     ("warning", "said"),
     [

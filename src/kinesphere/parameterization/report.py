@@ -7,7 +7,7 @@ import numpy as np
 
 from kinesphere.data import Array, Codes, JointFlag, Json
 from kinesphere.parameterization.anatomy import room
-from kinesphere.parameterization.joint_fit import JointFit
+from kinesphere.parameterization.joint_fit import JointFit, said_of
 from kinesphere.parameterization.measures import number
 from kinesphere.parameterization.view import JointView
 
@@ -71,7 +71,7 @@ def stage_warnings(
             if doubted:
                 warnings.append(f"{sentence}: {', '.join(doubted)}")
         halved = [
-            f"{name} (axis {fit.assumed.index(True) + 1}: {'; '.join(fit.doubts)})"
+            f"{name} ({said_of(fit)})"
             for name, fit in fits.items()
             if fit.source == "movement" and fit.half_told
         ]
@@ -98,7 +98,7 @@ def stage_warnings(
             f"its poses: {', '.join(added)}"
         )
     doubted = [
-        f"{name} ({'; '.join(fit.doubts)})"
+        f"{name} ({said_of(fit)})"
         for name, fit in fits.items()
         if fit.source == "reused" and fit.doubts
     ]

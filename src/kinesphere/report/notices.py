@@ -8,7 +8,7 @@ from kinesphere.data import Skeleton
 from kinesphere.report.wording import unique
 
 _PLURALS = {"foot": "feet"}
-_NUMBER = re.compile(r"\d+(?:\.\d+)?")
+_NUMBER = re.compile(r"(?<!axis )\d+(?:\.\d+)?")  # which axis is no figure of it
 _BRACKETED = re.compile(r"(\w+) \(([^()]*)\)(?:, |$)")
 _RUN = re.compile(r"\w+(?:, \w+)*")
 
