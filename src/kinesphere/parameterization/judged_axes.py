@@ -101,14 +101,14 @@ def judged(
     told = axis_told(quality, axes, view, options) if doubts and pair else None
     if doubts and told is None:
         return MovementAxes(axes, quality, tuple(doubts))
-    quality, apart_by = _contradicted(view, samples, axes, n_axes, quality, search, settings)
+    quality, apart_by, alone = _contradicted(view, samples, axes, n_axes, quality, search, settings)
     if not doubts:
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
     told = axis_told(quality, axes, view, options) if doubts and pair else None
-    if told is not None and apart_by[told] > doubtful:
+    if told is not None and alone[told] > doubtful:
         # another axis told would speak for it; alone it gives way to halves that are less alike
         doubts.append(
-            f"halves of the time put the axis that is told {np.rad2deg(apart_by[told]):.0f}° apart"
+            f"halves of the time put the axis that is told {np.rad2deg(alone[told]):.0f}° apart"
         )
         told = None
     remark = _remark(quality, apart_by, told, settings.axes)
@@ -123,21 +123,23 @@ def _contradicted(
     quality: AxesQuality,
     search: Searcher,
     settings: ParameterizationSettings,
-) -> tuple[AxesQuality, Array]:
+) -> tuple[AxesQuality, Array, Array]:
     """Return the quality with what halves of the time contradict, and the most they do, (n,) rad.
 
-    The most holds halves, too, that are not alike enough to judge the whole.
+    The most holds halves, too, that are not alike enough to judge the whole. Last comes how far
+    halves are apart that both move as far, however few phases one has; NaN where they do not.
     """
     halves = (half.samples for half in view_halves(view, settings))
     off, arcs = contradiction(halves, axes, search)
     comparable = arcs >= COMPARABLE * quality.ranges
+    as_far = np.where(comparable, off, np.nan)
     if n_axes > 1:  # main movements are made one after another: a half may lack one
         half = parted(len(view.samples.positions))
         shares = early_share(samples, quality.labels, len(axes), *half)
         comparable &= np.abs(shares - 0.5) <= 0.5 - LEAST_SHARE
     halves_apart = np.fmax(quality.halves, np.where(comparable, off, np.nan))
     said = np.where(arcs >= np.deg2rad(settings.axes.smallest_range), off, 0.0)
-    return replace(quality, halves=halves_apart), np.fmax(halves_apart, said)
+    return replace(quality, halves=halves_apart), np.fmax(halves_apart, said), as_far
 
 
 def with_room(options: AxesSettings, name: str) -> AxesSettings:
