@@ -7,13 +7,15 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+from kinesphere.data import Step
 from kinesphere.errors import BadModel
+from kinesphere.parameterization import judged_axes
 from kinesphere.parameterization.anatomy import body_axes, n_told
 from kinesphere.parameterization.angles import solve_angles
 from kinesphere.parameterization.joint import fit_joint
 from kinesphere.parameterization.one_of_two import completed
 from kinesphere.parameterization.report import stage_warnings
-from kinesphere.parameterization.reused import own_or_reused
+from kinesphere.parameterization.reused import own_or_reused, reused_fit
 from kinesphere.parameterization.settings import AxesSettings, ParameterizationSettings
 from kinesphere.parameterization.view import view_joint
 from kinesphere.synthetic import make_performance
@@ -98,6 +100,27 @@ def test_an_axis_far_from_the_body_is_not_kept_alone(rng):
     assert fit_joint(view, SETTINGS).source == "body"
 
 
+@pytest.mark.parametrize(
+    ("apart_deg", "arc_deg", "kept"),
+    [(82.0, 50.0, False), (82.0, 15.0, True), (15.0, 50.0, True)],
+)
+def test_halves_that_move_as_far_contradict_an_axis_alone(
+    rng, monkeypatch, apart_deg, arc_deg, kept
+):
+    """However few phases are in one: two axes would confirm each other, and it may lack one."""
+
+    def contradiction(halves, axes, search):
+        return np.deg2rad([[apart_deg] * len(axes), [arc_deg] * len(axes)])
+
+    monkeypatch.setattr(judged_axes, "contradiction", contradiction)
+    fit = fit_joint(hip(rng, 40.0, 5.0)[0], SETTINGS)  # arcs about flexion of 70°
+    assert fit.half_told == kept
+    assert fit.source == ("movement" if kept else "body")
+    assert kept or "halves of the time put the axis that is told 82° apart" in fit.doubts
+    if apart_deg == 15.0:
+        assert fit.loose == "axes from two halves of the data differ by 15°"
+
+
 def test_whoever_wants_doubtful_axes_gets_both_of_them(rng):
     keep = ParameterizationSettings(axes=AxesSettings(on_doubt="movement"))
     view, _ = hip(rng, 40.0, 6.0)
@@ -130,6 +153,25 @@ def test_which_axis_is_put_across_is_said(rng):
     said = [w for w in stage_warnings({}, {"left_hip": fit}, "phase-log-pca") if "one of two" in w]
     assert len(said) == 1
     assert "left_hip (axis 1: " in said[0]
+
+
+def test_reused_axes_are_not_doubted_for_what_was_left_out(rng):
+    plain = make_performance(rng, calibration_s=0.0, n_frames=3).skeleton
+    half = replace(plain.joint("left_hip"), axes_assumed=(True, False), axes_source="movement")
+    joints = tuple(half if joint.name == "left_hip" else joint for joint in plain.joints)
+    loose = "axes from two halves of the data differ by 12°"
+    told = {"doubts": ["an axis is 71° off", "an axis is uncertain", loose], "remark": loose}
+    step = Step("parameterization", {}, {"joints": {"left_hip": told}}, (), "0")
+    fit = reused_fit("left_hip", replace(plain, joints=joints, history=(step,)))
+    [said] = [w for w in stage_warnings({}, {"left_hip": fit}, "phase-log-pca") if "reused" in w]
+    assert said.endswith(
+        "left_hip (axis 1: an axis is 71° off; axis 1: an axis is uncertain; axis 2: " + loose + ")"
+    )
+    whole = replace(half, axes_assumed=())
+    joints = tuple(whole if joint.name == "left_hip" else joint for joint in plain.joints)
+    fit = reused_fit("left_hip", replace(plain, joints=joints, history=(step,)))
+    [said] = stage_warnings({}, {"left_hip": fit}, "phase-log-pca")
+    assert "axis 1:" not in said
 
 
 def test_axes_that_a_movement_told_are_counted(rng):

@@ -224,3 +224,22 @@ def test_an_elbow_that_is_no_hinge_gets_what_rebuilds_it(recordings):
         assert [w for w in solved.history[-1].warnings if "a second, across it" in w and name in w]
     knees = [solved.skeleton.joint(f"{side}_knee").n_axes for side in ("left", "right")]
     assert knees == [1, 1]
+
+
+def test_a_shoulder_whose_halves_contradict_its_only_axis_has_the_bodys(recordings):
+    parameters = parameterize(motion_of(recordings / "functional" / "Test_func_trunk.c3d"))
+    assert parameters.skeleton.joint("left_shoulder").axes_source == "body"
+    said = findings(parameters, "left_shoulder")["doubts"]
+    assert any("halves of the time" in doubt for doubt in said)
+    for name in ("left_hip", "right_hip"):
+        assert parameters.skeleton.joint(name).axes_sources == ("body", "movement")
+
+
+def test_a_short_walk_tells_no_axes_of_free_motion(recordings):
+    motion = motion_of(recordings / "cmu41" / "06_01.c3d")
+    settings = ParameterizationSettings(axes=AxesSettings(method="universal-joint"))
+    parameters = parameterize(motion, settings)
+    for name in ("left_hip", "right_hip"):
+        assert parameters.skeleton.joint(name).axes_source == "body"
+        (said,) = findings(parameters, name)["doubts"]
+        assert said.endswith("s tells no axes: 15 s are needed")

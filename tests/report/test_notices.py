@@ -40,6 +40,12 @@ def test_reasons_are_told_apart_most_common_first():
     ]
 
 
+def test_what_is_said_of_one_axis_is_not_said_of_another():
+    warning = "one is told: left_hip (axis 1: 12° off), right_hip (axis 2: 20° off)"
+    [found] = notices([warning], JOINTS)
+    assert found.reasons == (("axis 1: 12° off", "left hip"), ("axis 2: 20° off", "right hip"))
+
+
 @pytest.mark.parametrize(
     ("warning", "said"),
     [
@@ -48,7 +54,13 @@ def test_reasons_are_told_apart_most_common_first():
             "the centre of neck, hips; it is elsewhere",
         ),
         ("nothing tells the twist at left_hip, right_hip", "nothing tells the twist at hips"),
-        ("at left_hip alone", "at left_hip alone"),
+        ("at left_hip alone", "at left hip alone"),
+        ("at rest at left_upper_arm: 12.6 deg/s", "at rest at left upper arm: 12.6 deg/s"),
+        ("nothing tells the twist at left_foot", "nothing tells the twist at left foot"),
+        ("that of left_hip.", "that of left hip."),
+        ("see left_hip.c3d, a/left_hip, 'left_hip'", "see left_hip.c3d, a/left_hip, 'left_hip'"),
+        ("axes.counts=left_hip=1", "axes.counts=left_hip=1"),
+        ("labels LFHD, left_hip", "labels LFHD, left_hip"),
         ("labels LFHD, left_hip_marker, x", "labels LFHD, left_hip_marker, x"),
         ("left out: STRANGE (no reason we know)", "left out: STRANGE (no reason we know)"),
         ("trailing: neck (still) and more", "trailing: neck (still) and more"),

@@ -49,6 +49,20 @@ class JointFit:
         return tuple("body" if one else self.source for one in assumed)
 
 
+def said_of(fit: JointFit) -> str:
+    """Return what is doubted of a joint's axes; which axis, where one is told and one put across.
+
+    The remark is about the axis that serves, all else about the one that was found in its place.
+    """
+    if not fit.half_told:
+        return "; ".join(fit.doubts)
+    across, told = fit.assumed.index(True), fit.assumed.index(False)
+    remark = fit.findings.get("remark")
+    return "; ".join(
+        f"axis {(told if doubt == remark else across) + 1}: {doubt}" for doubt in fit.doubts
+    )
+
+
 def angles_between(axes: Array) -> list[Json]:
     """Return the angles in deg between the lines of each axis and the next, (n_axes, 3)."""
     return [float(np.rad2deg(np.arccos(np.clip(abs(a @ b), 0, 1)))) for a, b in pairwise(axes)]

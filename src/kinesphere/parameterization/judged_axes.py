@@ -7,14 +7,17 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.geometry.even_frames import parted
 from kinesphere.parameterization.anatomy import nominal_axes, room
-from kinesphere.parameterization.angles import two_axis_angles
-from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.hinge import other_reading
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
-from kinesphere.parameterization.axes.universal_joint import reference_rotation
 from kinesphere.parameterization.confidence import AxesQuality, assess_axes
 from kinesphere.parameterization.doubts import apart, reasons_to_doubt, uncertain
 from kinesphere.parameterization.free_hinge import worse_than_body
+from kinesphere.parameterization.free_pair import (
+    CLOSEST,
+    free_ranges,
+    in_free_motion,
+    too_short,
+)
 from kinesphere.parameterization.halves import (
     LEAST_SHARE,
     Finder,
@@ -24,11 +27,7 @@ from kinesphere.parameterization.halves import (
 )
 from kinesphere.parameterization.one_of_two import axis_told
 from kinesphere.parameterization.samples import JointSamples
-from kinesphere.parameterization.settings import (
-    AngleSettings,
-    AxesSettings,
-    ParameterizationSettings,
-)
+from kinesphere.parameterization.settings import AxesSettings, ParameterizationSettings
 from kinesphere.parameterization.view import JointView, view_halves
 
 COMPARABLE = 0.5  # of the whole arc: a half that moves less far is no judge of the whole
@@ -84,23 +83,34 @@ def judged(
         quality = replace(quality, readings=np.array([other_reading(samples, axes[0])]))
     nominal = nominal_axes(view.name, axes) if view.human else None
     positions = view.samples.positions
+    if free and (short := too_short(samples)):
+        return MovementAxes(axes, quality, (short,))
     if len(axes) < n_axes:
         doubts = [f"only {len(axes)} of {n_axes} main movements is there"]
     else:
         if free:
-            quality = replace(quality, ranges=_free_ranges(view, axes))
-            options = replace(options, smallest_explained=0.0)
+            ranges, beyond = free_ranges(view, axes)
+            quality = replace(quality, ranges=ranges)
+            closest = max(CLOSEST, options.smallest_angle)
+            options = replace(options, smallest_explained=0.0, smallest_angle=closest)
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
+        doubts += [beyond] if free and beyond else []
     if nominal is not None and n_axes == 1 and worse_than_body(axes[0], nominal[0], positions):
         doubts.append("the body frame's axis suits all the movement clearly better")
     pair = n_axes == 2 and not free
     told = axis_told(quality, axes, view, options) if doubts and pair else None
     if doubts and told is None:
         return MovementAxes(axes, quality, tuple(doubts))
-    quality, apart_by = _contradicted(view, samples, axes, n_axes, quality, search, settings)
+    quality, apart_by, alone = _contradicted(view, samples, axes, n_axes, quality, search, settings)
     if not doubts:
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
     told = axis_told(quality, axes, view, options) if doubts and pair else None
+    if told is not None and alone[told] > doubtful:
+        # another axis told would speak for it; alone it gives way to halves that are less alike
+        doubts.append(
+            f"halves of the time put the axis that is told {np.rad2deg(alone[told]):.0f}° apart"
+        )
+        told = None
     remark = _remark(quality, apart_by, told, settings.axes)
     return MovementAxes(axes, quality, tuple(doubts), remark, told)
 
@@ -113,21 +123,23 @@ def _contradicted(
     quality: AxesQuality,
     search: Searcher,
     settings: ParameterizationSettings,
-) -> tuple[AxesQuality, Array]:
+) -> tuple[AxesQuality, Array, Array]:
     """Return the quality with what halves of the time contradict, and the most they do, (n,) rad.
 
-    The most holds halves, too, that are not alike enough to judge the whole.
+    The most holds halves, too, that are not alike enough to judge the whole. Last comes how far
+    halves are apart that both move as far, however few phases one has; NaN where they do not.
     """
     halves = (half.samples for half in view_halves(view, settings))
     off, arcs = contradiction(halves, axes, search)
     comparable = arcs >= COMPARABLE * quality.ranges
+    as_far = np.where(comparable, off, np.nan)
     if n_axes > 1:  # main movements are made one after another: a half may lack one
         half = parted(len(view.samples.positions))
         shares = early_share(samples, quality.labels, len(axes), *half)
         comparable &= np.abs(shares - 0.5) <= 0.5 - LEAST_SHARE
     halves_apart = np.fmax(quality.halves, np.where(comparable, off, np.nan))
     said = np.where(arcs >= np.deg2rad(settings.axes.smallest_range), off, 0.0)
-    return replace(quality, halves=halves_apart), np.fmax(halves_apart, said)
+    return replace(quality, halves=halves_apart), np.fmax(halves_apart, said), as_far
 
 
 def with_room(options: AxesSettings, name: str) -> AxesSettings:
@@ -144,23 +156,3 @@ def _remark(quality: AxesQuality, apart_by: Array, told: int | None, options: Ax
     if np.rad2deg(quality.uncertainty[of].max()) > options.largest_uncertainty:
         return uncertain(quality, told)
     return ""
-
-
-def in_free_motion(n_axes: int, options: AxesSettings) -> bool:
-    """Return whether the method needs no main movements."""
-    return options.method == "universal-joint" and n_axes == 2
-
-
-def _free_ranges(view: JointView, axes: Array) -> Array:
-    """Return the ranges of both angles of a joint that moves about its axes at once, (2,) rad."""
-    at = view.calibration
-    angles = two_axis_angles(
-        view.samples.rotations,
-        axes,
-        reference_rotation(view.samples),
-        view.long_axis,
-        view.twist_known[at],
-        AngleSettings(),
-    ).angles[:, :2]
-    low, high = np.percentile(angles, PERCENTILES, axis=0)
-    return np.asarray(high - low)

@@ -5,7 +5,8 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.parameterization.axes import find_axes
 from kinesphere.parameterization.axes.fit import phase_labels
-from kinesphere.parameterization.judged_axes import MovementAxes, in_free_motion, judged
+from kinesphere.parameterization.free_pair import in_free_motion
+from kinesphere.parameterization.judged_axes import MovementAxes, judged
 from kinesphere.parameterization.main_movements import SHORTER, long_phases, main_movements
 from kinesphere.parameterization.one_of_two import REPEATED
 from kinesphere.parameterization.samples import JointSamples

@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.data import Array, Codes, JointFlag, Json
-from kinesphere.parameterization.joint_fit import JointFit
+from kinesphere.parameterization.anatomy import room
+from kinesphere.parameterization.joint_fit import JointFit, said_of
 from kinesphere.parameterization.measures import number
 from kinesphere.parameterization.view import JointView
 
@@ -70,7 +71,7 @@ def stage_warnings(
             if doubted:
                 warnings.append(f"{sentence}: {', '.join(doubted)}")
         halved = [
-            f"{name} (axis {fit.assumed.index(True) + 1}: {'; '.join(fit.doubts)})"
+            f"{name} ({said_of(fit)})"
             for name, fit in fits.items()
             if fit.source == "movement" and fit.half_told
         ]
@@ -89,13 +90,7 @@ def stage_warnings(
                 "no main movement tells these axes, but all movement together foretells where the "
                 f"limb goes clearly better than the body frame's axis: {', '.join(kept)}"
             )
-        loose = [f"{name} ({fit.loose})" for name, fit in fits.items() if fit.loose]
-        if loose:
-            warnings.append(
-                "halves of their movement put these axes more than 10° apart, or they are "
-                "uncertain by more, yet the body frame's would be no better: "
-                f"{', '.join(loose)}"
-            )
+        warnings += _loose_warnings(fits)
     added = [f"{name} ({fit.added})" for name, fit in fits.items() if fit.added]
     if added:
         warnings.append(
@@ -103,7 +98,7 @@ def stage_warnings(
             f"its poses: {', '.join(added)}"
         )
     doubted = [
-        f"{name} ({'; '.join(fit.doubts)})"
+        f"{name} ({said_of(fit)})"
         for name, fit in fits.items()
         if fit.source == "reused" and fit.doubts
     ]
@@ -140,6 +135,24 @@ def stage_warnings(
     if untwisted:
         warnings.append(f"nothing tells the twist at {', '.join(untwisted)}")
     return tuple(warnings)
+
+
+def _loose_warnings(fits: Mapping[str, JointFit]) -> list[str]:
+    """Return which axes are kept although halves contradict them, and why where that is known."""
+    sentence = (
+        "halves of their movement put these axes more than 10° apart, or they are uncertain by more"
+    )
+    farther_off = "; they are kept, for the body frame's are usually farther off at such joints"
+    warnings = []
+    for roomy, clause in ((False, ""), (True, farther_off)):
+        loose = [
+            f"{name} ({fit.loose})"
+            for name, fit in fits.items()
+            if fit.loose and (room(name) > 1) == roomy
+        ]
+        if loose:
+            warnings.append(f"{sentence}{clause}: {', '.join(loose)}")
+    return warnings
 
 
 def reach_warnings(

@@ -8,8 +8,10 @@ from kinesphere.data import Skeleton
 from kinesphere.report.wording import unique
 
 _PLURALS = {"foot": "feet"}
-_NUMBER = re.compile(r"\d+(?:\.\d+)?")
+_NUMBER = re.compile(r"(?<!axis )\d+(?:\.\d+)?")  # which axis is no figure of it
 _BRACKETED = re.compile(r"(\w+) \(([^()]*)\)(?:, |$)")
+_SUFFIX = re.compile(r"\.\w")
+_JOINERS = frozenset("'\"`=/\\.-")
 _RUN = re.compile(r"\w+(?:, \w+)*")
 
 
@@ -82,14 +84,24 @@ def _grouped(group: list[tuple[str, str]]) -> tuple[str, str]:
 
 
 def _in_few_words(text: str, names: frozenset[str]) -> Iterator[str]:
-    """Yield the text with each list of two and more known names put in few words."""
+    """Yield the text with each list of known names put in few words; a name alone, too.
+
+    Not what stands in a file's name, a setting or quotes, and no name among unknown ones.
+    """
     end = 0
     for run in _RUN.finditer(text):
         words = run.group().split(", ")
         known = [word in names for word in words]
         first = next((i for i, yes in enumerate(known) if yes), len(words))
-        if sum(known) > 1 and all(known[first:]):
+        alone = known == [True] and not _inside(text, run.start(), run.end())
+        if (alone or sum(known) > 1) and all(known[first:]):
             yield text[end : run.start()]
             yield ", ".join([*words[:first], names_in_words(words[first:])])
             end = run.end()
     yield text[end:]
+
+
+def _inside(text: str, start: int, end: int) -> bool:
+    """Return whether a word is part of something that must stay as it is written."""
+    before, after = text[max(0, start - 1) : start], text[end : end + 2]
+    return before in _JOINERS or after[:1] in _JOINERS - {"."} or bool(_SUFFIX.match(after))
