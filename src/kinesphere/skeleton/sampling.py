@@ -13,8 +13,6 @@ from kinesphere.geometry.vectors import is_seen
 JUMP = 0.05
 """m, most a marker's step between frames counts: a ghost's jump is no motion."""
 
-SOME = 3
-"""Markers of a limb that tell what its joint does."""
 TINY = 1e-3
 """m, way of a joint that does nothing but round."""
 
@@ -83,7 +81,7 @@ def spread_over_joints(
     steps = np.zeros(n_frames)
     for one, other in joints:
         ways = np.zeros(n_frames)
-        for a, b in product(one[:SOME], other[:SOME]):
+        for a, b in product(one, other):
             off = markers[:, a] - markers[:, b]
             step = np.abs(np.diff(np.sqrt(np.einsum("ni,ni->n", off, off))))
             ways[1:] += np.minimum(np.where(np.isfinite(step), step, 0.0), JUMP)
