@@ -18,6 +18,10 @@ NOBODY = (
     "no person is seen in the tree of bodies; limbs are numbered. If it was a person, bodies or "
     "joints are wrong, or limbs have no markers"
 )
+ANIMAL = (
+    "by proportions alone the tree could be a person, but four legs of equal length across the "
+    "trunk are rather an animal's: limbs are numbered"
+)
 LEG = ("thigh", "shank", "foot")
 ARM = ("upper_arm", "forearm", "hand")
 
@@ -47,11 +51,19 @@ class Names:
         return bool(np.isfinite(self.confidence))
 
 
-def find_names(figure: Figure, tree: Sequence[int]) -> Names:
+def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> Names:
     """Name the bodies of a tree.
 
     A person needs two legs of two bodies at least; left and right need feet, bent knees or bent
     elbows. Without sides pelvis, trunk and head keep their names and the rest is numbered.
+
+    Parameters
+    ----------
+    figure
+    tree
+        The bodies of the tree.
+    animal
+        What it costs to see an animal instead, in this tree or one that is about as likely.
     """
     found = find_person(figure, tree)
     nobody = no_names(tree, NOBODY)
@@ -60,12 +72,17 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     person, confidence = found
     if not person.convincing:
         return replace(nobody, cost=person.cost)
+    beside_animal = confidence_of(person.cost, animal)
+    confidence = min(confidence, beside_animal)
     account: dict[str, Json] = {
         "person": True,
         "tree_confidence": round(confidence, 3),
         "cost_per_length": round(person.cost / person.lengths, 2),
         "stature_m": round(person.stature, 2),
     }
+    if beside_animal < SURE:
+        account |= {"person": False}
+        return replace(no_names(tree, ANIMAL), account=account, cost=person.cost)
     if confidence < SURE:
         return replace(no_names(tree, _ambiguous(confidence)), account=account, cost=person.cost)
     refused = ""
