@@ -26,8 +26,10 @@ def discovered(
     orientation: OrientationSettings,
     *,
     asked: bool,
-) -> tuple[Recording, TopologicalModel]:
-    """Return the recording and the model that its motion tells.
+) -> tuple[Recording, TopologicalModel, float | None]:
+    """Return the recording, the model that its motion tells, and how many times too large it is.
+
+    The last as `kinesphere.skeleton.fit_skeleton` takes it.
 
     Parameters
     ----------
@@ -53,7 +55,7 @@ def discovered(
     step = found.step
     if not asked:
         step = replace(step, warnings=(why_no_model(recording, subject), *step.warnings))
-    return replace(recording, history=(*recording.history, step)), found.model
+    return replace(recording, history=(*recording.history, step)), found.model, found.unit
 
 
 def normalized_somehow(

@@ -27,6 +27,7 @@ from kinesphere.skeleton.discovery.tree_names import named_tree
 from kinesphere.skeleton.discovery.trust import shaken
 from kinesphere.skeleton.discovery.twigs import without_twigs
 from kinesphere.skeleton.sampling import spread_frames
+from kinesphere.skeleton.scale import times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
 
 
@@ -38,6 +39,9 @@ class Discovery:
     """Of the tree that was asked for."""
     step: Step
     """What was found and how sure it is, other trees and loose markers included."""
+    unit: float | None = None
+    """By which power of ten lengths are too large, or below 1 too small, for the person that was
+    found; for `fit_skeleton`. None where nothing says so."""
 
 
 def discover(
@@ -99,13 +103,16 @@ def discover(
     partition, tree, names = named_tree(partition, costs, settings)
     if settings.bodies is None:
         partition, tree, names = without_twigs(partition, tree, names, settings, limits)
-    forest = from_the_root(partition, names.limbs, labels, limits)
+    of_tree = [m for body in tree for m in partition.bodies[body]]
+    person = names.too_large if names.too_large != 1 else None
+    times = person or times_too_large(points[:, of_tree] * unit)
+    forest = from_the_root(partition, names.limbs, labels, limits, times)
     tree = next(t for t in forest.trees if tree[0] in t)
     partition = replace(partition, forest=forest)
     counted = 1.0 if settings.bodies else partition.clustering.count_confidence
     names = shaken(settled(names, tree), forest, counted)
     limb_of = {body: names.limbs[body] for body in tree}
-    model = tree_model(partition, costs, limb_of, labels, recording.labels)
+    model = tree_model(partition, costs, limb_of, labels, recording.labels, times)
     if continued:
         model = with_pieces(model, continued, recording.labels)
     near = settings.near_mm * 1e-3
@@ -130,7 +137,7 @@ def discover(
             faint=_faint(partition, costs, limb_of, model),
         ),
     )
-    return Discovery(model, step)
+    return Discovery(model, step, person)
 
 
 def _check_tree(partition: Partition, number: int) -> None:

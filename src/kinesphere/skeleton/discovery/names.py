@@ -44,6 +44,8 @@ class Names:
     """Bodies that are a person's limbs, though not told which."""
     refused: str = ""
     """Why these names are not given after all: the reading is good, the size is not a person's."""
+    too_large: float = 1.0
+    """By which power of ten lengths are too large, or below 1 too small, if this is a person."""
 
     @property
     def given(self) -> bool:
@@ -85,13 +87,16 @@ def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> N
         return replace(no_names(tree, ANIMAL), account=account, cost=person.cost)
     if confidence < SURE:
         return replace(no_names(tree, _ambiguous(confidence)), account=account, cost=person.cost)
-    refused = ""
+    refused, times = "", 1.0
     if not person.of_human_size:
+        times = person.times_too_large
         refused = (
             "by its proportions the tree could be a person, but the size is not a person's "
             f"(legs of someone of {person.stature:.2f} m): limbs are numbered; if it was a "
             "person, the unit of length is wrong"
         )
+        if times != 1:
+            refused += f", and joints are judged as if lengths were {1 / times:g} times as large"
     elif (sized := confidence_of(person.cost + person.size, person.nobody)) < confidence:
         confidence = sized
         refused = "" if sized >= SURE else _ambiguous(sized)
@@ -101,7 +106,7 @@ def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> N
         doubt = "nothing tells left from right; arms and legs are numbered"
         unnamed = frozenset(person.limbs.keys() - given.keys())
         return Names(
-            numbered(given, tree), confidence, account, doubt, person.cost, unnamed, refused
+            numbered(given, tree), confidence, account, doubt, person.cost, unnamed, refused, times
         )
     account |= {"sides_confidence": round(sides.confidence, 3)}
     account |= {f"sides_from_{name}": round(score, 2) for name, score in sides.scores.items()}
@@ -121,7 +126,7 @@ def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> N
     ]
     doubt = "; ".join(told for told in doubts if told)
     unnamed = frozenset(person.limbs.keys() - given.keys())
-    return Names(limbs, sure, account, doubt, person.cost, unnamed, refused)
+    return Names(limbs, sure, account, doubt, person.cost, unnamed, refused, times)
 
 
 def settled(names: Names, tree: Sequence[int]) -> Names:
