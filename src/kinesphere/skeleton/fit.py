@@ -23,7 +23,7 @@ from kinesphere.skeleton.chain import measure_chain
 from kinesphere.skeleton.far_centres import far_centres
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 from kinesphere.skeleton.measured import MeasuredJoint
-from kinesphere.skeleton.other_size import larger, smaller
+from kinesphere.skeleton.other_size import larger, with_lengths
 from kinesphere.skeleton.report import describe_joint, describe_limb
 from kinesphere.skeleton.sampling import spread_over_joints
 from kinesphere.skeleton.scale import scaled, size_share, times_too_large
@@ -96,7 +96,8 @@ def fit_skeleton(
     of_limbs = recording.markers[frames][:, columns]
     known, unit = unit is not None, times_too_large(of_limbs) if unit is None else unit
     if unit != 1:
-        motion = fit_skeleton(smaller(recording, unit), model, settings, unit=1.0)
+        smaller = with_lengths(recording, model, 1 / unit)
+        motion = fit_skeleton(*smaller, settings, unit=1.0)
         return larger(motion, unit, "" if known else TOO_LARGE.format(unit))
     asked, share = settings, size_share(of_limbs)
     settings = scaled(asked, share)

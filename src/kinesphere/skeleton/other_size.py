@@ -2,15 +2,31 @@
 
 from dataclasses import replace
 
-from kinesphere.data import Json, Motion, Recording, Skeleton
+from kinesphere.data import Json, Motion, Recording, Skeleton, TopologicalModel
+from kinesphere.skeleton.landmarks import STEADY
 
 MILLIMETRES = ("residual_mm", "uncertainty_mm")
 """Findings of each joint that are lengths."""
 
 
-def smaller(recording: Recording, unit: float) -> Recording:
-    """Return the recording with all positions divided by ``unit``."""
-    return replace(recording, markers=recording.markers / unit)
+def with_lengths(
+    recording: Recording, model: TopologicalModel, times: float
+) -> tuple[Recording, TopologicalModel]:
+    """Return the recording, and what the model has from it, with all lengths times ``times``.
+
+    What a model knows of people, from elsewhere, stays.
+    """
+    joints = tuple(
+        replace(
+            joint,
+            landmarks=tuple(
+                replace(mark, spread=mark.spread * times) if mark.source == STEADY else mark
+                for mark in joint.landmarks
+            ),
+        )
+        for joint in model.joints
+    )
+    return replace(recording, markers=recording.markers * times), replace(model, joints=joints)
 
 
 def larger(motion: Motion, unit: float, told: str = "") -> Motion:

@@ -31,7 +31,7 @@ def tree_model(
 ) -> TopologicalModel:
     """Return the model of one tree; ``limb_of`` has its bodies in order, the root first.
 
-    Its landmarks are for lengths that are not ``too_large`` times what they should be.
+    The recording's lengths are ``too_large`` times what they should be.
     """
     at = {label: column for column, label in enumerate(in_file)}
     owner = owners(partition.bodies, len(labels))
@@ -51,7 +51,7 @@ def tree_model(
         over = [m for m, there in visits.items() if {int(owner[m]), there} == {edge.a, edge.b}]
         landmark = Landmark(
             weights={labels[m]: 1 / len(over) for m in over},
-            spread=AT_THE_JOINT * size_share(costs.points * costs.unit / too_large),
+            spread=AT_THE_JOINT * too_large * size_share(costs.points * costs.unit / too_large),
             source=STEADY,
         )
         joints.append(
