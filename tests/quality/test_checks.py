@@ -116,6 +116,32 @@ def test_two_labels_on_one_marker(clean):
     assert found.frame == FIRST
 
 
+def doubled(clean, *, seen, labels):
+    """Return the recording with a copy of one marker that is seen in these frames."""
+    at = clean.labels.index("LANK")
+    copy = np.full_like(clean.markers[:, :1], np.nan)
+    copy[seen, 0] = clean.markers[seen, at]
+    named = tuple(labels.get(label, label) for label in (*clean.labels, "copy"))
+    markers = np.concatenate([clean.markers, copy], axis=1)
+    return replace(clean, markers=markers, labels=named, rate=10.0)
+
+
+@pytest.mark.parametrize("labels", [{}, {"copy": "*7"}, {"copy": "*7", "LANK": "*3"}])
+def test_a_copy_is_one_whether_labelled_or_not(clean, labels):
+    found = only(check_recording(doubled(clean, seen=slice(None), labels=labels)))
+    pair = {labels.get("LANK", "LANK"), labels.get("copy", "copy")}
+    assert (found.rule, set(found.markers)) == ("coincident", pair)
+
+
+def test_pieces_without_labels_that_meet_are_no_copies(clean):
+    """Half of what shows one shows both: each shows what the other does not."""
+    recording = doubled(clean, seen=slice(None), labels={"copy": "*7"})
+    markers, n = recording.markers.copy(), len(recording.markers)
+    markers[: n // 3, -1] = markers[2 * n // 3 :, recording.labels.index("LANK")] = np.nan
+    rules = {f.rule for f in check_recording(replace(recording, markers=markers))}
+    assert "coincident" not in rules
+
+
 def test_passing_by_is_not_coincident(clean):
     other = clean.markers[3, clean.labels.index("LANK")]
     assert not any(
