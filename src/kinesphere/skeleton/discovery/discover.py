@@ -13,6 +13,7 @@ from kinesphere.data import (
 from kinesphere.errors import BadRecording
 from kinesphere.geometry.lifetimes import worth_grouping
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
+from kinesphere.skeleton.discovery.continued import find_continued
 from kinesphere.skeleton.discovery.copies import find_copies, with_pieces, with_pieces_joined
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
 from kinesphere.skeleton.discovery.names import settled
@@ -29,6 +30,9 @@ from kinesphere.skeleton.discovery.twigs import without_twigs
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
+
+LISTED = 8
+"""Pieces that are named in the warning; the findings hold all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +97,13 @@ def discover(
     if twice := [*copies, *pieces]:
         markers = np.delete(with_pieces_joined(markers, pieces), twice, axis=1)
         columns = np.delete(columns, twice)
+    if later := find_continued(markers, recording.rate, columns):
+        found_again = {
+            recording.labels[columns[p]]: recording.labels[columns[w]] for p, w in later.items()
+        }
+        continued = {p: found_again.get(w, w) for p, w in continued.items()} | found_again
+        markers = np.delete(with_pieces_joined(markers, later), [*later], axis=1)
+        columns = np.delete(columns, [*later])
     points = np.ascontiguousarray(markers[spread_frames(markers, settings.sample_frames)])
     limits = skeleton or SkeletonSettings()
     costs = JointCosts(points, unit)
@@ -127,6 +138,7 @@ def discover(
         findings=account_of(partition, labels, ghosts, model, names, limb_of, near)
         | {"copies": dict(alike), "pieces": dict(continued)},
         warnings=_told_of_copies(alike)
+        + _told_of_pieces(continued)
         + doubts_about(
             partition,
             labels,
@@ -152,6 +164,14 @@ def _told_of_copies(alike: dict[str, str]) -> tuple[str, ...]:
         return ()
     pairs = ", ".join(f"{copy} (as {kept})" for copy, kept in alike.items())
     return (f"trajectories that are there twice are left out but for one: {pairs}",)
+
+
+def _told_of_pieces(whole_of: dict[str, str]) -> tuple[str, ...]:
+    if not whole_of:
+        return ()
+    pairs = [f"{piece} ({whole})" for piece, whole in whole_of.items()]
+    listed = ", ".join(pairs if len(pairs) <= LISTED else [*pairs[:LISTED], "…"])
+    return (f"{len(pairs)} trajectories are taken for pieces of others: {listed}",)
 
 
 def _faint(
