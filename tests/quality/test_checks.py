@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from kinesphere.data import Recording
-from kinesphere.quality import check_recording, find_gaps, swaps
+from kinesphere.quality import check_recording, find_gaps, swaps, with_zeros_as_gaps
 
 FIRST = 101  # number of the first stored frame, so that indices and frame numbers differ
 
@@ -98,6 +98,32 @@ def test_a_jump_beside_zeros_is_still_a_jump(clean):
     found = check_recording(spoiled(jump, "LWRA", slice(12, 14), 0.0))
     assert [f.rule for f in found] == ["at-zero", "jump"]
     assert found[1].frame == FIRST + 30
+
+
+@pytest.mark.parametrize(("at", "gone"), [(0.09, False), (0.11, True)])
+def test_a_zero_is_a_gap_unless_the_marker_is_beside_the_origin(clean, at, gone):
+    column, markers = clean.labels.index("RELB"), clean.markers.copy()
+    markers[10:20, column], markers[9, column] = 0.0, [0.0, at, 0.0]
+    markers[:3, 0] = 0.0  # and one that is far from it, at the very beginning
+    recording = replace(clean, markers=markers)
+    found, told = with_zeros_as_gaps(recording)
+    assert np.isnan(found.markers[10:20, column]).all() == gone
+    assert (found.markers[10:20, column] == 0).all() == (not gone)
+    assert np.isnan(found.markers[:3, 0]).all()
+    same = found.seen
+    np.testing.assert_array_equal(found.markers[same], recording.markers[same])
+    frames = {f.markers[0]: dict(f.numbers)["frames"] for f in told}
+    assert frames == {clean.labels[0]: 3} | ({"RELB": 10} if gone else {})
+
+
+def test_a_marker_that_is_nowhere_else_is_never_seen(clean):
+    found, told = with_zeros_as_gaps(spoiled(clean, "RELB", slice(None), 0.0))
+    assert not found.seen[:, clean.labels.index("RELB")].any()
+    assert [f.markers for f in told] == [("RELB",)]
+
+
+def test_without_zeros_nothing_changes(clean):
+    assert with_zeros_as_gaps(clean) == (clean, ())
 
 
 def test_a_marker_that_never_moves(clean):
