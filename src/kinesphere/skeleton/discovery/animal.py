@@ -22,6 +22,9 @@ person's arms are .68 of the legs without hands and feet, .64 with them."""
 TRUNK, TRUNKS = 1.2, 0.35
 """From hips to shoulders in lengths of the hind legs' first two bodies, and standard deviation of
 its logarithm; a person has .59."""
+WIDE, WIDTHS = 0.3, 0.4
+"""Left to right leg of a pair, as a share of that way, and standard deviation of its logarithm: arm
+and leg of one side are no pair."""
 ACROSS, LEAN = 90.0, 20.0
 """deg, usual angle of the legs to the trunk, and its standard deviation from animal to animal."""
 
@@ -68,6 +71,8 @@ def _cost(figure: Figure, at: int, hind: Pair, before: int, fore: Pair) -> float
         off(lengths[2], lengths[3], SIDES),
         off(lengths[2] + lengths[3], lengths[0] + lengths[1], AS_LONG),
         off(figure.length(hips, shoulders), TRUNK * sum(two) / 2, TRUNKS),
+        off(figure.length(legs[0][0], legs[1][0]), WIDE * figure.length(hips, shoulders), WIDTHS),
+        off(figure.length(legs[2][0], legs[3][0]), WIDE * figure.length(hips, shoulders), WIDTHS),
         _across(along, figure.place(("amid", legs[0][2], legs[1][2])) - figure.place(hips)),
         _across(along, figure.place(("amid", legs[2][2], legs[3][2])) - figure.place(shoulders)),
     ]
