@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 
 CELL = np.deg2rad(10.0)
 """rad, poses nearer to each other than this count as one: soft tissue errs alike in both."""
+UNKNOWNS = 4
+"""A centre's coordinates and a distance to it: so many looks tell nothing."""
 FAR = 10.0
 """Spreads from the expectation beyond which an algebraic centre is no place to start from."""
 
@@ -161,12 +163,15 @@ def _fit(
     if _has_skin(view):
         fit = fit_through_skin(view, x, expected, prior, n_poses, hidden=hidden, rounds=rounds)
         return fit.centre, fit.told
-    # distances and orientation are two readings of the same sightings
+    # any four looks fit; distances and orientation are two readings of the same sightings
+    n_poses = max(n_poses - UNKNOWNS, 0)
     looks = n_poses / hidden**2 / (1 if turning is None else 2)
     x = descend(view, x, expected, prior, looks, rounds)
     information = find_information(view, x, looks)
     share = averaging_share(view, x)
-    over = overrated(share, len(view.points), n_poses, hidden)
+    seen = view.sightings.seen  # what is hidden is no look
+    n_seen = round(float(seen.sum(axis=0).mean())) if seen.any() else len(seen)
+    over = overrated(share, n_seen, n_poses, hidden)
     # and no number of poses tells a centre better than what lasts lets it be the same
     lasts = (1 - share) * _robust_noise(view, x) ** 2
     return x, Told(information, over * information + lasts * information @ information)

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from kinesphere.geometry.rigid import left_by_fit
 from kinesphere.geometry.vectors import is_seen
 
 Array = NDArray[np.float64]
@@ -43,6 +44,5 @@ def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
     # noise goes with a joint by chance, too: as much of it in every marker, give or take
     total, most = float((noise**2).sum()), 1 + 2 * np.sqrt(2 / (9 * n))
     noise *= np.sqrt(max(1 - most * chance.sum() / max(total, 1e-300), BY_CHANCE))
-    # the fit itself takes up six of the coordinates: what is left looks smaller than it is
-    noise *= np.sqrt(3 * n / max(3 * n - 6, 1))
+    noise *= left_by_fit(is_seen(local))
     return np.where(noise > LEAST, noise, NONE)

@@ -136,16 +136,25 @@ def fit_group(
     told = np.linalg.eigvalsh(fit.information[1:])[:, 1]
     firm = told >= 1 / (settings.undetermined_mm * 1e-3) ** 2
     share = _averaging_share(fit.linkage, points)
-    over = [overrated(share, len(points), n, settings.soft_tissue) for n in n_poses]
+    n_seen = round(len(points) * float(is_seen(points).mean()))  # what is hidden is no look
+    over = [overrated(share, n_seen, n, settings.soft_tissue) for n in n_poses]
     return GroupFit(_joints(group, fit, known, n_poses, over), not near.all(), bool(firm.all()))
 
 
 def _averaging_share(linkage: Linkage, points: Array) -> float:
     """Return the share of the markers' strays that averages out over frames, 0…1."""
-    off = misfit(linkage, points, is_seen(points))[0]
+    seen = is_seen(points)
+    off = misfit(linkage, points, seen)[0]
     first, others = linkage.rotations[:, :1], linkage.rotations[:, 1:]
     turns = np.swapaxes(first, 2, 3) @ others
-    return noise_share(off.reshape(len(off), -1), nearest(turns.reshape(len(turns), -1)))
+    near = nearest(turns.reshape(len(turns), -1))
+    if seen.all():
+        return noise_share(off.reshape(len(off), -1), near)
+    both = seen & seen[near]
+    if not both.any():
+        return 0.0
+    apart = np.median(((off - off[near])[both] ** 2).sum(axis=1)) / 2
+    return min(float(apart / max(np.median((off[both] ** 2).sum(axis=1)), 1e-300)), 1.0)
 
 
 def _starts(
