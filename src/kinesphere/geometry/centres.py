@@ -125,13 +125,21 @@ def fit_centre(
 
 
 def with_expectation(
-    centre: Array, information: Array, spread: float, noise: float, n_poses: int, over: float = 1.0
+    centre: Array,
+    information: Array,
+    spread: float,
+    noise: float,
+    n_poses: int,
+    over: float = 1.0,
+    pushed: Array | None = None,
 ) -> CentreFit:
     """Return a centre found in another way, from what the motion told about it, (3, 3) 1/m².
 
-    ``over`` is how many times its variance is what this information says.
+    ``over`` is how many times its variance is what this information says, ``pushed``, (3, 3) 1/m²,
+    the variance of what draws it astray besides.
     """
-    prior, told = np.eye(3) / spread**2, Told(information, over * information)
+    astray = np.zeros((3, 3)) if pushed is None else pushed
+    prior, told = np.eye(3) / spread**2, Told(information, over * information + astray)
     return CentreFit(
         centre=centre,
         noise=noise,

@@ -8,6 +8,7 @@ from kinesphere.data import Array, Mask
 from kinesphere.geometry.joint_turns import nearest
 from kinesphere.geometry.linkage import Linkage, misfit
 from kinesphere.geometry.linkage_fit import LinkageFit, fit_linkage
+from kinesphere.geometry.linkage_shake import feigned_pull
 from kinesphere.geometry.pose_worth import noise_share, overrated
 from kinesphere.geometry.range_of_motion import range_of_motion
 from kinesphere.geometry.vectors import is_seen, lengths
@@ -138,7 +139,12 @@ def fit_group(
     share = _averaging_share(fit.linkage, points)
     n_seen = round(len(points) * float(is_seen(points).mean()))  # what is hidden is no look
     over = [overrated(share, n_seen, n, settings.soft_tissue) for n in n_poses]
-    return GroupFit(_joints(group, fit, known, n_poses, over), not near.all(), bool(firm.all()))
+    spreads = np.array([0.0, *(j.spread for j in measured)])
+    pushed = feigned_pull(
+        fit.linkage, is_seen(points), fit.scale, fit.information, expected, spreads
+    )
+    found = _joints(group, fit, known, n_poses, over, pushed)
+    return GroupFit(found, not near.all(), bool(firm.all()))
 
 
 def _averaging_share(linkage: Linkage, points: Array) -> float:
@@ -195,7 +201,12 @@ def _moved(rotations: Array, parent: int, child: int) -> float:
 
 
 def _joints(
-    group: tuple[str, ...], fit: LinkageFit, known: Mask, n_poses: list[int], over: list[float]
+    group: tuple[str, ...],
+    fit: LinkageFit,
+    known: Mask,
+    n_poses: list[int],
+    over: list[float],
+    pushed: Array,
 ) -> dict[str, LinkedJoint]:
     linked = {}
     origins = fit.linkage.origins
@@ -205,6 +216,6 @@ def _joints(
         world[known] = origins[:, i]
         frames[known] = fit.linkage.rotations[:, fit.linkage.parents[i]]
         linked[limb] = LinkedJoint(
-            world, frames, fit.information[i], over[i - 1], fit.scale, n_poses[i - 1]
+            world, frames, fit.information[i], over[i - 1], fit.scale, n_poses[i - 1], pushed[i]
         )
     return linked

@@ -27,6 +27,8 @@ class LinkedJoint(NamedTuple):
     noise: float
     """m."""
     n_poses: int
+    pushed: Array
+    """(3, 3) 1/m², variance of what draws the centre astray besides."""
 
     def seen_from(self, parent: Body, spread: float) -> CentreFit | None:
         """Return the joint in its parent, however that was measured; None where it never shows."""
@@ -43,4 +45,5 @@ class LinkedJoint(NamedTuple):
             self.noise,
             self.n_poses,
             self.over,
+            turn @ self.pushed @ turn.T,
         )
