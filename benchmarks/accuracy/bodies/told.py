@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.accuracy.bodies.linked_chains import Kind, chain, model
 from kinesphere.geometry.rigid import into_frame
 from kinesphere.skeleton import fit_skeleton
 from kinesphere.synthetic import (
@@ -98,6 +99,16 @@ CONDITIONS = (
     Condition("41 markers, half missing, skin, 20 s free", *SKIN, **FREE, missing=0.5, sparse=True),
 )
 
+CHAINS = (
+    Kind("1 mm noise", last=3),
+    Kind("1 mm noise, a hinge beyond", last=3, hinge=True),
+    Kind("3 mm of skin", skin=0.003),
+    Kind("3 mm of skin, a hinge beyond", skin=0.003, hinge=True),
+    Kind("8 mm of skin", skin=0.008),
+)
+"""Limbs in a row, fitted together: the middle one has no pose of its own."""
+NO_AXIS = float("nan"), float("nan")
+
 
 @dataclass(frozen=True)
 class Told:
@@ -117,8 +128,33 @@ class Told:
 
 
 def told_rows() -> list[Told]:
-    """Return a row a joint of every actor in every condition."""
-    return [row for one in CONDITIONS for seed in SEEDS for row in rows_of(one, seed)]
+    """Return a row a joint of every actor in every condition, and of chains of limbs."""
+    people = [row for one in CONDITIONS for seed in SEEDS for row in rows_of(one, seed)]
+    return people + [row for one in CHAINS for seed in SEEDS for row in chain_rows(one, seed)]
+
+
+def chain_rows(kind: Kind, seed: int) -> list[Told]:
+    """Return a row a joint of limbs in a row, the middle one of two markers."""
+    recording, centres = chain(kind, seed)
+    skeleton = (motion := fit_skeleton(recording, model(kind.last))).skeleton
+    rows = []
+    for joint, world in zip(skeleton.joints, centres, strict=True):
+        parent = skeleton.limb_names.index(joint.parent)
+        local = into_frame(motion.rotations[:, parent], motion.origins[:, parent], world[:, None])
+        off = joint.centre_in_parent - np.nanmean(local[:, 0], axis=0)
+        error, told = np.linalg.norm(off), np.sqrt(np.trace(joint.covariance))
+        name = f"limbs of 4, 2 and {kind.last} markers, {kind.name}"
+        row = Told(
+            name,
+            seed,
+            joint.name,
+            1e3 * float(error),
+            1e3 * float(told),
+            *NO_AXIS,
+            joint.observability,
+        )
+        rows.append(row)
+    return rows
 
 
 def rows_of(condition: Condition, seed: int) -> list[Told]:
