@@ -107,6 +107,7 @@ CHAINS = (
     Kind("8 mm of skin", skin=0.008),
 )
 """Limbs in a row, fitted together: the middle one has no pose of its own."""
+IN_A_ROW = "limbs in a row"
 NO_AXIS = float("nan"), float("nan")
 
 
@@ -143,7 +144,7 @@ def chain_rows(kind: Kind, seed: int) -> list[Told]:
         local = into_frame(motion.rotations[:, parent], motion.origins[:, parent], world[:, None])
         off = joint.centre_in_parent - np.nanmean(local[:, 0], axis=0)
         error, told = np.linalg.norm(off), np.sqrt(np.trace(joint.covariance))
-        name = f"limbs of 4, 2 and {kind.last} markers, {kind.name}"
+        name = f"{IN_A_ROW} of 4, 2 and {kind.last} markers, {kind.name}"
         row = Told(
             name,
             seed,

@@ -126,26 +126,34 @@ def fit_centre(
 
 def with_expectation(
     centre: Array,
-    information: Array,
+    told: Told | Array,
     spread: float,
     noise: float,
     n_poses: int,
-    over: float = 1.0,
-    pushed: Array | None = None,
+    off: Array | None = None,
 ) -> CentreFit:
-    """Return a centre found in another way, from what the motion told about it, (3, 3) 1/m².
+    """Return a centre found in another way, from what the motion told about it.
 
-    ``over`` is how many times its variance is what this information says, ``pushed``, (3, 3) 1/m²,
-    the variance of what draws it astray besides.
+    Parameters
+    ----------
+    told
+        Or its information alone, (3, 3) 1/m², where that says what its variance is.
+    off : (3,) m
+        From where the centre was expected to where it is: where nothing is told it is astray by
+        that, too.
     """
-    astray = np.zeros((3, 3)) if pushed is None else pushed
-    prior, told = np.eye(3) / spread**2, Told(information, over * information + astray)
+    told = told if isinstance(told, Told) else Told(told, told)
+    prior = np.eye(3) / spread**2
+    covariance = covariance_of(told, prior, 1.0, spread)
+    if off is not None:
+        untold_of = np.linalg.solve(prior + told.pull, prior @ off)
+        covariance = covariance + np.outer(untold_of, untold_of)
     return CentreFit(
         centre=centre,
         noise=noise,
         data_covariance=data_covariance_of(told, spread),
         prior=prior,
-        covariance=covariance_of(told, prior, 1.0, spread),
+        covariance=covariance,
         n_poses=n_poses,
     )
 

@@ -1,11 +1,13 @@
-"""What noise feigns of the turns of linked bodies, and where that draws their joints."""
+"""What linked bodies tell of their joints, less what noise feigns of their turns."""
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kinesphere.geometry.centre_covariance import Told
 from kinesphere.geometry.joint_turns import joint_turns
 from kinesphere.geometry.linkage import Linkage, by_pose_of, square_of
 from kinesphere.geometry.rotations import mean_rotation
+from kinesphere.geometry.shake import DOUBT, clear_of_shake
 
 Array = NDArray[np.float64]
 
@@ -13,20 +15,20 @@ STILL = 1e-9
 """rad², variance of turns that keeps their matrix solvable."""
 
 
-def feigned_pull(
+def cleared_of_shake(
     linkage: Linkage,
     seen: NDArray[np.bool_],
     scale: float,
     information: Array,
+    over: Array,
     expected: Array,
     spreads: Array,
-) -> Array:
-    """Return the variance of the force that feigned turns put on each joint, (n_bodies, 3, 3) 1/m².
+) -> list[Told]:
+    """Return what the motion tells of each joint without what noise in the poses feigns.
 
     Shaking poses look like motion, about the axis of a hinge as about any other: the fit seems to
-    know where on it the centre is, and puts it where noise moves points least, amid the markers of
-    the limb beyond (see `kinesphere.geometry.shake`). Information in proportion to the share of the
-    turns that is noise pulls there, from wherever the centre is.
+    know where on it the centre is (see `kinesphere.geometry.shake`). That share of the information
+    is as large as the share of the turns that is noise.
 
     Parameters
     ----------
@@ -37,13 +39,19 @@ def feigned_pull(
         m, standard deviation of a marker in each direction.
     information : (n_bodies, 3, 3) 1/m²
         As `kinesphere.geometry.linkage_fit.fit_linkage` returns it.
+    over : (n_bodies,)
+        How many times its variance is what it says.
     expected : (n_bodies, 3) m
         Centres in their parents.
     spreads : (n_bodies,) m
-        How far off they may be; the first says nothing.
+        How far off they may be.
+
+    Returns
+    -------
+    Of each body; of the first nothing.
     """
     own = np.linalg.inv(square_of(_seen_pose(linkage, seen))) * scale**2
-    pulls = np.zeros((len(linkage.parents), 3, 3))
+    told = [Told(np.zeros((3, 3)), np.zeros((3, 3)))]
     for body, parent in enumerate(linkage.parents[1:], start=1):
         to_parent = np.swapaxes(linkage.rotations[:, parent], 1, 2)
         relative = to_parent @ linkage.rotations[:, body]
@@ -57,8 +65,11 @@ def feigned_pull(
         feigned = root @ _within(_moves(noise), shown) @ root.T
         towards = expected[body] - linkage.centres[body] - mean @ linkage.shapes[body].mean(axis=0)
         off = np.outer(towards, towards) + spreads[body] ** 2 * np.eye(3)
-        pulls[body] = feigned @ off @ feigned
-    return pulls
+        doubt = DOUBT**2 * feigned @ off @ feigned
+        curve, heard = clear_of_shake(information[body], feigned, doubt)
+        scatter = over[body] * information[body] + doubt
+        told.append(Told(heard @ curve, heard @ scatter @ heard.T))
+    return told
 
 
 def _seen_pose(linkage: Linkage, seen: NDArray[np.bool_]) -> Array:

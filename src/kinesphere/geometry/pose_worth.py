@@ -13,7 +13,7 @@ NARROW = np.deg2rad(10.0)
 """rad, rms rotation about its widest axis at which a joint turns little: see `crowding`."""
 
 
-COHERENT = 0.03
+COHERENT = 0.02
 """Share of all poses, whatever they are like, in which what lasts errs alike at least."""
 
 

@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.data import Array, Mask
+from kinesphere.geometry.centre_covariance import Told
 from kinesphere.geometry.joint_turns import nearest
 from kinesphere.geometry.linkage import Linkage, misfit
 from kinesphere.geometry.linkage_fit import LinkageFit, fit_linkage
-from kinesphere.geometry.linkage_shake import feigned_pull
+from kinesphere.geometry.linkage_shake import cleared_of_shake
 from kinesphere.geometry.pose_worth import noise_share, overrated
 from kinesphere.geometry.range_of_motion import range_of_motion
 from kinesphere.geometry.vectors import is_seen, lengths
@@ -136,14 +137,15 @@ def fit_group(
     near = off < STRAYED * np.array([j.spread for j in measured])  # not so where it is not finite
     told = np.linalg.eigvalsh(fit.information[1:])[:, 1]
     firm = told >= 1 / (settings.undetermined_mm * 1e-3) ** 2
+    seen = is_seen(points)
     share = _averaging_share(fit.linkage, points)
-    n_seen = round(len(points) * float(is_seen(points).mean()))  # what is hidden is no look
-    over = [overrated(share, n_seen, n, settings.soft_tissue) for n in n_poses]
+    n_seen = round(len(points) * float(seen.mean()))  # what is hidden is no look
+    over = np.array([1.0, *(overrated(share, n_seen, n, settings.soft_tissue) for n in n_poses)])
     spreads = np.array([0.0, *(j.spread for j in measured)])
-    pushed = feigned_pull(
-        fit.linkage, is_seen(points), fit.scale, fit.information, expected, spreads
+    cleared = cleared_of_shake(
+        fit.linkage, seen, fit.scale, fit.information, over, expected, spreads
     )
-    found = _joints(group, fit, known, n_poses, over, pushed)
+    found = _joints(group, fit, known, n_poses, cleared, fit.linkage.centres - expected)
     return GroupFit(found, not near.all(), bool(firm.all()))
 
 
@@ -205,8 +207,8 @@ def _joints(
     fit: LinkageFit,
     known: Mask,
     n_poses: list[int],
-    over: list[float],
-    pushed: Array,
+    told: list[Told],
+    off: Array,
 ) -> dict[str, LinkedJoint]:
     linked = {}
     origins = fit.linkage.origins
@@ -215,7 +217,5 @@ def _joints(
         frames = np.full((len(known), 3, 3), np.nan)
         world[known] = origins[:, i]
         frames[known] = fit.linkage.rotations[:, fit.linkage.parents[i]]
-        linked[limb] = LinkedJoint(
-            world, frames, fit.information[i], over[i - 1], fit.scale, n_poses[i - 1], pushed[i]
-        )
+        linked[limb] = LinkedJoint(world, frames, told[i], off[i], fit.scale, n_poses[i - 1])
     return linked
