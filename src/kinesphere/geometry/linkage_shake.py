@@ -4,10 +4,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.geometry.centre_covariance import Told
-from kinesphere.geometry.joint_turns import joint_turns
-from kinesphere.geometry.linkage import Linkage, by_pose_of, square_of
+from kinesphere.geometry.joint_turns import joint_turns, nearest
+from kinesphere.geometry.linkage import Linkage, by_pose_of, misfit, square_of
+from kinesphere.geometry.linkage_fit import LinkageFit
+from kinesphere.geometry.pose_worth import noise_share
 from kinesphere.geometry.rotations import mean_rotation
 from kinesphere.geometry.shake import DOUBT, clear_of_shake
+from kinesphere.geometry.vectors import is_seen
 
 Array = NDArray[np.float64]
 
@@ -16,10 +19,8 @@ STILL = 1e-9
 
 
 def cleared_of_shake(
-    linkage: Linkage,
+    fit: LinkageFit,
     seen: NDArray[np.bool_],
-    scale: float,
-    information: Array,
     over: Array,
     expected: Array,
     spreads: Array,
@@ -32,15 +33,11 @@ def cleared_of_shake(
 
     Parameters
     ----------
-    linkage
-        Fitted.
-    seen : (n_frames, n_markers)
-    scale
-        m, standard deviation of a marker in each direction.
-    information : (n_bodies, 3, 3) 1/m²
+    fit
         As `kinesphere.geometry.linkage_fit.fit_linkage` returns it.
+    seen : (n_frames, n_markers)
     over : (n_bodies,)
-        How many times its variance is what it says.
+        How many times a centre's variance is what the fit's information says.
     expected : (n_bodies, 3) m
         Centres in their parents.
     spreads : (n_bodies,) m
@@ -50,7 +47,8 @@ def cleared_of_shake(
     -------
     Of each body; of the first nothing.
     """
-    own = np.linalg.inv(square_of(_seen_pose(linkage, seen))) * scale**2
+    linkage, information = fit.linkage, fit.information
+    own = np.linalg.inv(square_of(_seen_pose(linkage, seen))) * fit.scale**2
     told = [Told(np.zeros((3, 3)), np.zeros((3, 3)))]
     for body, parent in enumerate(linkage.parents[1:], start=1):
         to_parent = np.swapaxes(linkage.rotations[:, parent], 1, 2)
@@ -70,6 +68,28 @@ def cleared_of_shake(
         scatter = over[body] * information[body] + doubt
         told.append(Told(heard @ curve, heard @ scatter @ heard.T))
     return told
+
+
+def averaging_share(linkage: Linkage, points: Array) -> float:
+    """Return the share of the markers' strays that averages out over frames, 0…1.
+
+    Parameters
+    ----------
+    points : (n_frames, n_markers, 3) m
+        Body by body; NaN where not seen, which says nothing.
+    """
+    seen = is_seen(points)
+    off = misfit(linkage, points, seen)[0]
+    first, others = linkage.rotations[:, :1], linkage.rotations[:, 1:]
+    turns = np.swapaxes(first, 2, 3) @ others
+    near = nearest(turns.reshape(len(turns), -1))
+    if seen.all():
+        return noise_share(off.reshape(len(off), -1), near)
+    both = seen & seen[near]
+    if not both.any():
+        return 0.0
+    apart = np.median(((off - off[near])[both] ** 2).sum(axis=1)) / 2
+    return min(float(apart / max(np.median((off[both] ** 2).sum(axis=1)), 1e-300)), 1.0)
 
 
 def _seen_pose(linkage: Linkage, seen: NDArray[np.bool_]) -> Array:

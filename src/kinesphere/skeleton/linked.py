@@ -6,11 +6,10 @@ import numpy as np
 
 from kinesphere.data import Array, Mask
 from kinesphere.geometry.centre_covariance import Told
-from kinesphere.geometry.joint_turns import nearest
-from kinesphere.geometry.linkage import Linkage, misfit
+from kinesphere.geometry.linkage import Linkage
 from kinesphere.geometry.linkage_fit import LinkageFit, fit_linkage
-from kinesphere.geometry.linkage_shake import cleared_of_shake
-from kinesphere.geometry.pose_worth import noise_share, overrated
+from kinesphere.geometry.linkage_shake import averaging_share, cleared_of_shake
+from kinesphere.geometry.pose_worth import overrated
 from kinesphere.geometry.range_of_motion import range_of_motion
 from kinesphere.geometry.vectors import is_seen, lengths
 from kinesphere.skeleton.averages import mean_seen, median_seen
@@ -138,31 +137,13 @@ def fit_group(
     told = np.linalg.eigvalsh(fit.information[1:])[:, 1]
     firm = told >= 1 / (settings.undetermined_mm * 1e-3) ** 2
     seen = is_seen(points)
-    share = _averaging_share(fit.linkage, points)
+    share = averaging_share(fit.linkage, points)
     n_seen = round(len(points) * float(seen.mean()))  # what is hidden is no look
     over = np.array([1.0, *(overrated(share, n_seen, n, settings.soft_tissue) for n in n_poses)])
     spreads = np.array([0.0, *(j.spread for j in measured)])
-    cleared = cleared_of_shake(
-        fit.linkage, seen, fit.scale, fit.information, over, expected, spreads
-    )
+    cleared = cleared_of_shake(fit, seen, over, expected, spreads)
     found = _joints(group, fit, known, n_poses, cleared, fit.linkage.centres - expected)
     return GroupFit(found, not near.all(), bool(firm.all()))
-
-
-def _averaging_share(linkage: Linkage, points: Array) -> float:
-    """Return the share of the markers' strays that averages out over frames, 0…1."""
-    seen = is_seen(points)
-    off = misfit(linkage, points, seen)[0]
-    first, others = linkage.rotations[:, :1], linkage.rotations[:, 1:]
-    turns = np.swapaxes(first, 2, 3) @ others
-    near = nearest(turns.reshape(len(turns), -1))
-    if seen.all():
-        return noise_share(off.reshape(len(off), -1), near)
-    both = seen & seen[near]
-    if not both.any():
-        return 0.0
-    apart = np.median(((off - off[near])[both] ** 2).sum(axis=1)) / 2
-    return min(float(apart / max(np.median((off[both] ** 2).sum(axis=1)), 1e-300)), 1.0)
 
 
 def _starts(
