@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from kinesphere.cli.surface_words import surface_in_words
-from kinesphere.report import counted, finding_in_words, number_in_words
+from kinesphere.report import counted, finding_in_words, in_words, number_in_words
 
 
 def stage_in_words(stage: dict[str, Any], summary: dict[str, Any]) -> str:
@@ -159,11 +159,17 @@ def _normalization(found: dict[str, Any], _: dict[str, Any]) -> str:
 
 
 def _calibration(found: dict[str, Any], _: dict[str, Any]) -> str:
-    sources: dict[int, list[str]] = {}
-    for joint, number in (found.get("axes_from") or {}).items():
-        sources.setdefault(number, []).append(str(joint).replace("_", " "))
-    told = "; ".join(f"{number}: {', '.join(names)}" for number, names in sorted(sources.items()))
-    return f"axes known best by recording {told}" if told else ""
+    if span := found.get("window_s"):
+        return f"window {span[0]:g}–{span[1]:g} s; {found['used_s']:.4g} s of it are recorded"
+    sources: dict[str, list[str]] = {}
+    for joint, origins in (found.get("axes_from") or {}).items():
+        several = isinstance(origins, list | tuple)
+        for k, name in enumerate(origins if several else [origins], start=1):
+            if name is not None:
+                part = f"{in_words(joint)} (axis {k})" if several else in_words(joint)
+                sources.setdefault(str(name), []).append(part)
+    told = "; ".join(f"{name}: {', '.join(parts)}" for name, parts in sorted(sources.items()))
+    return f"axes known best by {told}" if told else "no axes of other recordings"
 
 
 def _parameterization(_: dict[str, Any], summary: dict[str, Any]) -> str:
