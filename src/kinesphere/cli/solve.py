@@ -49,8 +49,8 @@ def solve(
             "--calibration-from",
             metavar="DIR",
             help="Take axes and rest positions from a solved recording of the same person. Given "
-            "several times (a functional trial for each joint or axis), in any order, every axis comes "
-            "from where it is known best, and contradictions are told.",
+            "several times (a functional trial for each joint or axis), in any order, every axis "
+            "comes from where it is known best, and contradictions are told.",
         ),
     ] = None,
     facing: Annotated[

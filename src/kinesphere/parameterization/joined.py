@@ -6,7 +6,7 @@ from itertools import chain
 import numpy as np
 
 from kinesphere.data import Array, Json
-from kinesphere.parameterization.anatomy import body_axes, nominal_axes, wanted_n_axes
+from kinesphere.parameterization.anatomy import nominal_axes, wanted_n_axes
 from kinesphere.parameterization.joint_fit import JointFit, angles_between, or_null
 
 PER_AXIS = ("ranges_deg", "conditioning", "halves_disagreement_deg")
@@ -32,9 +32,7 @@ def counterpart(fit: JointFit, k: int, other: JointFit, name: str) -> int | None
     mine, theirs = _n_swings(fit, name), _n_swings(other, name)
     if mine == theirs == 1:
         return len(other.axes) - 1
-    kinds, of_others = fit.axes[-mine:], other.axes[-theirs:]
-    if body_axes(name) is not None:
-        kinds, of_others = (nominal_axes(name, axes) for axes in (kinds, of_others))
+    kinds, of_others = (_kinds(one.axes[-n:], name) for one, n in ((fit, mine), (other, theirs)))
     alike = np.abs(of_others @ kinds[k - len(fit.axes)])
     nearest = int(alike.argmax())
     if alike[nearest] < np.cos(np.deg2rad(45.0)):
@@ -62,8 +60,9 @@ def joined(
 ) -> JointFit | None:
     """Return a joint of two axes with one of them taken from elsewhere; None if they are too close.
 
-    The rest orientation and the order of the axes are those of ``base``: poses are told about any
-    rest, and the proximal axis stays proximal.
+    The rest orientation and the order of the axes are those of ``base``. A proximal axis lies the
+    same in the parent wherever the limb is, a distal one turns about it: where it was seen is part
+    of the rest orientation, so ``base`` had better be what told the distal axis.
 
     Parameters
     ----------
@@ -120,6 +119,12 @@ def joined(
 
 def _n_swings(fit: JointFit, name: str) -> int:
     return min(len(fit.axes), wanted_n_axes(name))
+
+
+def _kinds(axes: Array, name: str) -> Array:
+    """Return which of the body's axes each is, (n_axes, 3); itself where nobody named the joint."""
+    nominal = nominal_axes(name, axes)
+    return axes if nominal is None else nominal
 
 
 def _split(doubt: str) -> tuple[int | None, str]:

@@ -1,14 +1,15 @@
 """Axes from another recording: what was doubted of them there, and whether they fit here."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from kinesphere.data import Array, Json, Skeleton
 from kinesphere.parameterization.anatomy import n_told, wanted_n_axes
 from kinesphere.parameterization.angles import JointAngles
-from kinesphere.parameterization.joint import OUT_OF_REACH, solve_joint
 from kinesphere.parameterization.joined import counterpart, joined, told_axes
+from kinesphere.parameterization.joint import OUT_OF_REACH, solve_joint
 from kinesphere.parameterization.joint_fit import JointFit
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.third_axis import fit_axes
@@ -89,7 +90,7 @@ def _with_own(
 ) -> JointFit | None:
     """Return a half told joint with the axis that this recording tells in place of the assumed one.
 
-    The rest orientation is that of the other recording.
+    The rest orientation is that of the recording which tells the distal axis (`joined`).
     """
     if len(there.axes) != 2 or not own.half_told:
         return None
@@ -100,6 +101,7 @@ def _with_own(
             both = joined(there, own, place, k, closest)
             if both is None:
                 return None
+            both = replace(both, rest=own.rest if place == 0 else there.rest)
             share, _ = reach_and_twist(view, both.axes, both.rest, settings)
             return None if share > OUT_OF_REACH else both
     return None

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import permutations
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,8 @@ from kinesphere.pipeline.frames_apart import Turn, turn_between
 
 CONTRADICTION = np.deg2rad(10.0)
 """rad, angle between axes of two recordings that is worth telling where both are sure of more."""
+
+DISTAL, PROXIMAL = 0, 1  # of two axes
 
 
 class Calibrated(NamedTuple):
@@ -110,26 +113,21 @@ def _bearing(joint: Joint, best: _Told) -> Joint:
 
 
 def _mixed(name: str, told: Sequence[_Told], settings: AxesSettings) -> Iterator[_Told]:
-    """Yield joints of two axes with one axis of another recording, the best there is for each."""
+    """Yield joints of two axes whose proximal one is another recording's.
+
+    The distal one belongs to the rest orientation it was seen about, so both are of one recording.
+    """
     closest = np.deg2rad(settings.smallest_angle)
-    for one in told:
-        base = one.fit
-        if len(base.axes) != 2 or wanted_n_axes(name) != 2:
+    for one, other in permutations(told, 2):
+        base, n_axes = one.fit, (len(one.fit.axes), wanted_n_axes(name))
+        if n_axes != (2, 2) or DISTAL not in told_axes(base, name):
             continue
-        for place in (0, 1):
-            if base.assumed and base.assumed[1 - place]:
-                continue  # neither axis would be this recording's
-            mixed = []
-            for other in told:
-                if other is one:
-                    continue
-                for given in told_axes(other.fit, name):
-                    if counterpart(other.fit, given, base, name) == place:
-                        turn = _turn(name, one.base, other.base)
-                        both = joined(base, other.fit, place, given, closest, *turn)
-                        if both is not None:
-                            mixed.append(_Told(both, one.base, one.again or other.again))
-            yield from mixed
+        for given in told_axes(other.fit, name):
+            if counterpart(other.fit, given, base, name) == PROXIMAL:
+                turn = _turn(name, one.base, other.base)
+                both = joined(base, other.fit, PROXIMAL, given, closest, *turn)
+                if both is not None:
+                    yield _Told(both, one.base, one.again or other.again)
 
 
 def _order(told: _Told, name: str) -> tuple[object, ...]:

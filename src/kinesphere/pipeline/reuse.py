@@ -81,7 +81,7 @@ def parameterized(
     if others:
         reuse, apart = with_best_axes(motion.skeleton, others, settings.axes)
         found |= {
-            "recordings": sorted(other.name for other in others),
+            "recordings": [*sorted(other.name for other in others)],
             "axes_from": {j.name: _origins(j.axes_reused_from) for j in reuse.joints if j.n_axes},
         }
         if apart:
