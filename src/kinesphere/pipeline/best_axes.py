@@ -122,8 +122,11 @@ def _mixed(name: str, told: Sequence[_Told], settings: AxesSettings) -> Iterator
         base, n_axes = one.fit, (len(one.fit.axes), wanted_n_axes(name))
         if n_axes != (2, 2) or DISTAL not in told_axes(base, name):
             continue
+        if not np.isfinite(base.uncertainty[DISTAL]):
+            continue  # what nobody knows would seem better than what is known
         for given in told_axes(other.fit, name):
-            if counterpart(other.fit, given, base, name) == PROXIMAL:
+            known = np.isfinite(other.fit.uncertainty[given])
+            if known and counterpart(other.fit, given, base, name) == PROXIMAL:
                 turn = _turn(name, one.base, other.base)
                 both = joined(base, other.fit, PROXIMAL, given, closest, *turn)
                 if both is not None:
@@ -141,7 +144,9 @@ def _order(told: _Told, name: str) -> tuple[object, ...]:
     known = known[np.isfinite(known)]
     largest, all_of_them = (known.max(), known.sum()) if len(known) else (np.inf, np.inf)
     doubts = sum(bool(doubted(fit, k)) for k in axes)
-    return -len(axes), doubts, largest, all_of_them, told.again, told.base.name, fit.reused_from
+    origins = fit.reused_from
+    mixed = len({origins[k] for k in axes})  # of equals rather one that one recording told
+    return -len(axes), doubts, largest, all_of_them, mixed, told.again, told.base.name, origins
 
 
 def _contradictions(name: str, best: _Told, told: Sequence[_Told]) -> Iterator[str]:

@@ -54,7 +54,8 @@ def parameterized(
 ) -> Parameters:
     """Return the joint parameters of a motion, about its own axes or those of other recordings.
 
-    Where they were looked for, and what speaks against that, becomes a step of the history.
+    From where axes of others are, and what speaks against them or against the window, becomes a
+    step of the history.
 
     Parameters
     ----------
@@ -73,7 +74,7 @@ def parameterized(
     """
     doubts = calibration_doubts(motion, calibration, others)
     found: dict[str, Json] = {}
-    if calibration is not None:
+    if calibration is not None and doubts:
         length = motion.n_frames / motion.rate
         start, end = calibration
         found = {"window_s": [start, end], "used_s": max(min(end, length) - max(start, 0.0), 0.0)}
