@@ -119,8 +119,8 @@ def test_a_third_recording_is_told_about_both_axes(performance, alike):
         assert joint.axes_reused_from == ("distal", "proximal")
     found = next(step.findings for step in one.history if step.name == "calibration")
     assert found["recordings"] == ["distal", "proximal"]
-    assert found["axes_from"]["left_hip"] == ["distal", "proximal"]
-    assert found["axes_from"]["left_knee"] == "distal"
+    assert found["axes_from"]["left_hip"] == {"axis_1": "distal", "axis_2": "proximal"}
+    assert found["axes_from"]["left_knee"] == {"axis_1": "distal"}
     # angles and twists → poses → the same angles and twists
     wanted = np.deg2rad(rng.uniform(5, 25, size=one.parameters.angles.shape))
     wanted[~np.isfinite(one.parameters.angles[:1]).repeat(len(wanted), axis=0)] = np.nan

@@ -258,7 +258,9 @@ def test_a_trial_for_each_joint(performance):
         assert (joint.axes_source == "reused") == mine
     step = next(s for s in again.history if s.name == "calibration")
     assert step.findings["axes_from"] == {
-        name: "recording 1" if name.endswith("knee") else "recording 2"
+        name: {"axis_1": "recording 1"}
+        if name.endswith("knee")
+        else {"axis_1": "recording 2", "axis_2": "recording 2"}
         for name in names
         if name.endswith(("knee", "hip"))
     }

@@ -21,7 +21,9 @@ def stage_in_words(stage: dict[str, Any], summary: dict[str, Any]) -> str:
         As ``describe_solution`` returns it.
     """
     words = _WORDS.get(stage["name"], _any)
-    return words({**stage["settings"], **stage["findings"]}, summary)
+    told = words({**stage["settings"], **stage["findings"]}, summary)
+    warnings = stage.get("warnings", ())
+    return told or (f"{counted(len(warnings), 'warning')}, see below" if warnings else "")
 
 
 def _any(found: dict[str, Any], _: dict[str, Any]) -> str:
@@ -163,10 +165,10 @@ def _calibration(found: dict[str, Any], _: dict[str, Any]) -> str:
         return f"window {span[0]:g}–{span[1]:g} s; {found['used_s']:.4g} s of it are recorded"
     sources: dict[str, list[str]] = {}
     for joint, origins in (found.get("axes_from") or {}).items():
-        several = isinstance(origins, list | tuple)
-        for k, name in enumerate(origins if several else [origins], start=1):
+        whole = len(set(origins.values())) == 1
+        for axis, name in list(origins.items())[: 1 if whole else None]:
             if name is not None:
-                part = f"{in_words(joint)} (axis {k})" if several else in_words(joint)
+                part = in_words(joint) if whole else f"{in_words(joint)} ({in_words(axis)})"
                 sources.setdefault(str(name), []).append(part)
     told = "; ".join(f"{name}: {', '.join(parts)}" for name, parts in sorted(sources.items()))
     return f"axes known best by {told}" if told else "no axes of other recordings"

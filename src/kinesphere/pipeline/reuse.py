@@ -97,9 +97,8 @@ def parameterized(
 
 
 def _origins(names: Sequence[str]) -> Json:
-    """Return where a joint's axes are from: one name for all, or one for each, null if assumed."""
-    alike = set(names)
-    return names[0] if len(alike) == 1 else [name or None for name in names]
+    """Return where each axis of a joint is from; null for one that was put across."""
+    return {f"axis_{k}": name or None for k, name in enumerate(names, start=1)}
 
 
 def _skeleton(source: Source) -> Skeleton:
