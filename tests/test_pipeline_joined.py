@@ -4,14 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from benchmarks.accuracy.one_movement import axis_errors, one_movement
 from numpy.testing import assert_allclose, assert_array_equal
-from scipy.signal import lfilter
 
 from kinesphere.data import motion_from_parameters
 from kinesphere.parameterization import parameterize
 from kinesphere.pipeline import solve
 from kinesphere.pipeline.best_axes import with_best_axes
-from kinesphere.pipeline.frames_apart import turn_between
 from kinesphere.pipeline.reuse import calibrated
 from kinesphere.synthetic import make_performance
 
@@ -26,33 +25,10 @@ def performance():
     return make_performance(np.random.default_rng(3), rate=25.0, calibration_s=60.0, free_s=0.0)
 
 
-def trial(performance, about, scatter_deg, seed):
-    """Return a recording in which every joint moves about one axis, twice, under 1 mm of noise.
-
-    The posture all of it starts from is off by ``scatter_deg`` in every joint, as people stand
-    differently from trial to trial.
-    """
-    rng = np.random.default_rng(seed)
-    told = performance.parameters
-    angles = np.array(told.angles)
-    for k in {0, 1, 2} - {about}:
-        angles[..., k] *= 0.0  # NaN, an axis that is not there, stays
-    angles += np.deg2rad(scatter_deg) * rng.normal(size=angles.shape[1:])
-    names = ("root_positions", "root_rotations", "twists", "residuals", "flags", "moving")
-    twice = {name: np.concatenate([getattr(told, name)] * 2) for name in names}
-    motion = motion_from_parameters(replace(told, angles=np.concatenate([angles] * 2), **twice))
-    places = motion.marker_positions()
-    markers = np.stack([places[label] for label in performance.recording.labels], axis=1)
-    keep = np.exp(-1 / (told.rate * 0.4))
-    kicks = rng.normal(size=markers.shape) * np.sqrt(1 - keep**2)
-    noise = 1e-3 * lfilter([1.0], [1.0, -keep], kicks, axis=0)
-    return replace(performance.recording, markers=markers + noise)
-
-
 def solved(performance, scatter_deg):
     """Return solutions of a trial about the distal and of one about the proximal axes."""
     return {
-        name: solve(trial(performance, about, scatter_deg, seed=7 + about), performance.model)
+        name: solve(one_movement(performance, about, scatter_deg, 7 + about), performance.model)
         for about, name in enumerate(("distal", "proximal"))
     }
 
@@ -60,14 +36,6 @@ def solved(performance, scatter_deg):
 @pytest.fixture(scope="module")
 def alike(performance):
     return solved(performance, 0.0)
-
-
-def errors(skeleton, performance, name):
-    """Return how far each axis is from the true one in deg, (2,)."""
-    joint, true = skeleton.joint(name), performance.skeleton.joint(name)
-    limb = performance.skeleton.limb(true.parent)
-    found = joint.axes @ turn_between(limb, skeleton.limb(joint.parent)).rotation.T
-    return np.rad2deg(np.arccos(np.minimum(1.0, np.abs((found * true.axes).sum(axis=1)))))
 
 
 def test_both_together_know_each_axis_as_well_as_the_better_one(performance, alike):
@@ -80,8 +48,8 @@ def test_both_together_know_each_axis_as_well_as_the_better_one(performance, ali
         both = bearing.joint(name)
         assert both.axes_sources == ("movement", "movement")
         assert both.axes_reused_from == ("distal", "proximal")
-        alone = [errors(one, performance, name) for one in (distal, proximal)]
-        together = errors(bearing, performance, name)
+        alone = [axis_errors(one, performance, name) for one in (distal, proximal)]
+        together = axis_errors(bearing, performance, name)
         assert together[0] == pytest.approx(alone[0][0])
         assert together[1] < alone[1][1] + 0.2
         assert max(together) < 2.5
@@ -97,10 +65,10 @@ def test_people_stand_differently_and_markers_tell(performance):
     for name in TOLD:
         both, own = bearing.joint(name), proximal.joint(name)
         assert both.axes_reused_from == ("distal", "proximal")
-        assert errors(bearing, performance, name)[1] < 1.5
+        assert axis_errors(bearing, performance, name)[1] < 1.5
         as_named = replace(own, axes=np.array([both.axes[0], own.axes[1]]))
         joints = tuple(as_named if j.name == name else j for j in bearing.joints)
-        by_name.append(errors(replace(bearing, joints=joints), performance, name)[1])
+        by_name.append(axis_errors(replace(bearing, joints=joints), performance, name)[1])
     assert max(by_name) > 5.0
 
 

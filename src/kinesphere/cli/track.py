@@ -51,7 +51,7 @@ def track(
             "--calibration-from",
             metavar="DIR",
             help="Take axes and rest positions from a solved recording of the same person, by "
-            "markers or without; may be given again.",
+            "markers or without; may be given again, as for 'kinesphere solve'.",
         ),
     ] = None,
     facing: Annotated[
