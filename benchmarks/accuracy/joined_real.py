@@ -39,8 +39,8 @@ def functional(folder: Path) -> list[str]:
     lines = [
         "## Functional trials",
         "",
-        "`Test_func_trunk`, solved with the trials of knees, ankles and hips. In brackets what that",
-        "recording tells by itself.",
+        "`Test_func_trunk`, solved with the trials of knees, ankles and hips. In brackets what",
+        "that recording tells by itself.",
         "",
         "| joint | axis 1 | axis 2 | axis 3 |",
         "|---|---|---|---|",
