@@ -32,7 +32,7 @@ def hung(rng):
 
 def markers(linkage):
     empty = np.zeros((FRAMES, sum(len(s) for s in linkage.shapes), 3))
-    return misfit(linkage, empty, np.ones(empty.shape[:2], dtype=bool))[0]
+    return misfit(linkage, empty, np.ones(empty.shape[:2], dtype=bool))
 
 
 def shaken(rng, linkage, size=0.01, turn=0.2):
