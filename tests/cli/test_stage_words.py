@@ -59,6 +59,8 @@ def test_a_calibration_says_where_axes_are_from():
     assert (
         told == "axes known best by abduct: left hip (axis 1); flex: left hip (axis 2), left knee"
     )
+    one = words("calibration", [], [], recordings=["a"], axes_from={"neck": {"axis_1": "a"}})
+    assert one == "axes of a: neck"
     none = words("calibration", [], [], recordings=["flex"], axes_from={})
     assert none == "no axes of other recordings"
 

@@ -171,7 +171,10 @@ def _calibration(found: dict[str, Any], _: dict[str, Any]) -> str:
                 part = in_words(joint) if whole else f"{in_words(joint)} ({in_words(axis)})"
                 sources.setdefault(str(name), []).append(part)
     told = "; ".join(f"{name}: {', '.join(parts)}" for name, parts in sorted(sources.items()))
-    return f"axes known best by {told}" if told else "no axes of other recordings"
+    if not told:
+        return "no axes of other recordings"
+    several = len(found.get("recordings", ())) > 1
+    return f"axes known best by {told}" if several else f"axes of {told}"
 
 
 def _parameterization(_: dict[str, Any], summary: dict[str, Any]) -> str:
