@@ -79,7 +79,7 @@ def averaging_share(linkage: Linkage, points: Array) -> float:
         Body by body; NaN where not seen, which says nothing.
     """
     seen = is_seen(points)
-    off = misfit(linkage, points, seen)[0]
+    off = misfit(linkage, points, seen)
     first, others = linkage.rotations[:, :1], linkage.rotations[:, 1:]
     turns = np.swapaxes(first, 2, 3) @ others
     near = nearest(turns.reshape(len(turns), -1))
