@@ -1,10 +1,11 @@
 """A joint's motion as samples on its joint sphere (paper section 4), and their smoothing."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import butter, sosfilt_zi
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array, Mask
@@ -13,6 +14,7 @@ from kinesphere.geometry.rotations import (
     quaternions_from_rotations,
     rotation_angle,
 )
+from kinesphere.kernels.low_pass import align_signs_kernel, both_ways_kernel
 
 Frames = NDArray[np.intp]
 Phase = tuple[int, int]
@@ -128,16 +130,23 @@ def smooth_rotations(rotations: Array, rate: float, cutoff: float) -> Array:
     """
     if not 0 < cutoff < 0.45 * rate:
         return rotations
-    sos = butter(2, cutoff, fs=rate, output="sos")
+    section, steady = _low_pass(rate, cutoff)
     rotations = without_spikes(rotations, rate)
     smooth = rotations.copy()
-    for start, stop in runs(np.asarray(np.isfinite(rotations).all(axis=(1, 2)))):
+    for start, stop in runs(np.isfinite(rotations.reshape(-1, 9) @ np.ones(9))):
         if stop - start < 4:
             continue
         q = quaternions_from_rotations(rotations[start:stop])
-        flips = np.where((q[1:] * q[:-1]).sum(axis=1) < 0, -1.0, 1.0)
-        q[1:] *= np.cumprod(flips)[:, None]
+        align_signs_kernel(q)
         padding = min(stop - start - 1, int(np.ceil(rate / cutoff)))
-        there, back = (sosfiltfilt(sos, x, axis=0, padlen=padding) for x in (q, q[::-1]))
+        there = both_ways_kernel(section, steady, q, padding)
+        back = both_ways_kernel(section, steady, q[::-1].copy(), padding)
         smooth[start:stop] = Rotation.from_quat(there + back[::-1]).as_matrix()
     return smooth
+
+
+@lru_cache
+def _low_pass(rate: float, cutoff: float) -> tuple[Array, Array]:
+    """Return the coefficients of a Butterworth filter, (6,), and its steady state, (2,)."""
+    sos = butter(2, cutoff, fs=rate, output="sos")
+    return sos[0], sosfilt_zi(sos)[0]
