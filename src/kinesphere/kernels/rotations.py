@@ -1,4 +1,4 @@
-"""Rotations of many frames as quaternions and as rotation vectors."""
+"""Rotations of many frames: as quaternions, as rotation vectors, turned about an axis."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,3 +77,31 @@ def rotation_vectors_kernel(quaternions: NDArray[np.float64], vectors: NDArray[n
             scale = -scale
         for i in range(3):
             vectors[f, i] = scale * q[i]
+
+
+@kernel
+def turn_kernel(
+    axis: NDArray[np.float64],
+    sines: NDArray[np.float64],
+    cosines: NDArray[np.float64],
+    rotations: NDArray[np.float64],
+) -> None:
+    """Turn every rotation about one axis, in place: Rodrigues' formula on each column.
+
+    Parameters
+    ----------
+    axis : (3,)
+        Unit vector.
+    sines, cosines : (n,)
+        Of the angles.
+    rotations : (n, 3, 3)
+    """
+    x, y, z = axis
+    for f in range(len(rotations)):
+        s, c = sines[f], cosines[f]
+        for k in range(3):
+            p, q, r = rotations[f, 0, k], rotations[f, 1, k], rotations[f, 2, k]
+            along = (1.0 - c) * (x * p + y * q + z * r)
+            rotations[f, 0, k] = c * p + s * (y * r - z * q) + along * x
+            rotations[f, 1, k] = c * q + s * (z * p - x * r) + along * y
+            rotations[f, 2, k] = c * r + s * (x * q - y * p) + along * z

@@ -6,6 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array, Codes, Mask, PoseFlag
 from kinesphere.geometry.even_frames import parted
+from kinesphere.geometry.rotations import carried
 from kinesphere.parameterization.movement_filter import Movement, limb_speeds, movement_of
 from kinesphere.parameterization.samples import JointSamples, runs, smooth_rotations
 from kinesphere.parameterization.settings import ParameterizationSettings
@@ -106,7 +107,7 @@ def view_joint(
     cutoff = 0.0 if settings.filter.method == "paper" else settings.filter.cutoff
     if smoothed is None:
         smooth = smooth_rotations(rotations, rate, cutoff)
-        smoothed = Smoothed(smooth, limb_speeds(smooth @ long_axis, rate, settings.filter))
+        smoothed = Smoothed(smooth, limb_speeds(carried(smooth, long_axis), rate, settings.filter))
     smooth = smoothed.rotations
     movement = movement_of(smoothed.speeds, rate, settings.filter, calibration)
     chosen = np.asarray(np.isfinite(smooth[:, 0, 0]) & calibration)
@@ -123,7 +124,7 @@ def view_joint(
         if b > a
     )
     samples = JointSamples(
-        smooth, smooth @ long_axis, phases, rate, long_axis, frames, rotations[frames]
+        smooth, carried(smooth, long_axis), phases, rate, long_axis, frames, rotations[frames]
     )
     return JointView(
         name, rotations, long_axis, twist_known, samples, movement, chosen, smoothed, human
