@@ -105,3 +105,18 @@ def turn_kernel(
             rotations[f, 0, k] = c * p + s * (y * r - z * q) + along * x
             rotations[f, 1, k] = c * q + s * (z * p - x * r) + along * y
             rotations[f, 2, k] = c * r + s * (x * q - y * p) + along * z
+
+
+@kernel
+def tangents_kernel(axis: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return two unit vectors perpendicular to a unit vector, (3,), and to each other, (2, 3)."""
+    tangents = np.zeros((2, 3))
+    least = np.argmin(np.abs(axis))
+    i, j = (least + 1) % 3, (least + 2) % 3
+    size = np.sqrt(axis[i] ** 2 + axis[j] ** 2)
+    tangents[0, i] = axis[j] / size
+    tangents[0, j] = -axis[i] / size
+    for k in range(3):
+        after, last = (k + 1) % 3, (k + 2) % 3
+        tangents[1, k] = axis[after] * tangents[0, last] - axis[last] * tangents[0, after]
+    return tangents
