@@ -101,14 +101,14 @@ def fit_centre(
     if _has_skin(view):
         if hinge is not None:
             prior = prior + tighter_along(view, expected, tighter) / spread**2
-        x, told = _fit(view, x, expected, prior, hidden, rounds)
+        x, told = _fit(view, x, expected, prior, n_poses, hidden, rounds)
     else:
         # nearly without expectation a centre may flee along the axis: no place to start from
-        loose = _fit(view, x, expected, 0.01 * prior, hidden, rounds)[1].pull
+        loose = _fit(view, x, expected, 0.01 * prior, n_poses, hidden, rounds)[1].pull
         along = None if hinge is None else open_axis(loose, spread, hinge)
         if along is not None:
             prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
-        x, told = _fit(view, x, expected, prior, hidden, rounds)
+        x, told = _fit(view, x, expected, prior, n_poses, hidden, rounds)
         if along is not None:  # what was not asked has told nothing
             across = np.eye(3) - np.outer(along, along)
             told = Told(*(across @ one @ across for one in told))
@@ -154,10 +154,16 @@ def _has_skin(view: View) -> bool:
 
 
 def _fit(
-    view: View, x: Array, expected: Array, prior: Array, hidden: float, rounds: int
+    view: View,
+    x: Array,
+    expected: Array,
+    prior: Array,
+    n_poses: int,
+    hidden: float,
+    rounds: int,
 ) -> tuple[Array, Told]:
     """Return the centre, and what the motion tells about it."""
-    turning, n_poses = view.turning, count_poses(view, expected)
+    turning = view.turning
     if _has_skin(view):
         fit = fit_through_skin(view, x, expected, prior, n_poses, hidden=hidden, rounds=rounds)
         return fit.centre, fit.told
@@ -179,10 +185,16 @@ def count_poses(view: View, centre: Array) -> int:
         y = seen[np.isfinite(seen).all(axis=1)]
         if len(y) == 0:
             continue
-        radius = max(float(np.median(np.linalg.norm(y, axis=1))), 1e-9)
+        radius = max(float(np.median(lengths(y))), 1e-9)
         cells = np.floor(y / (radius * CELL)).astype(np.int64)
-        most = max(most, len(np.unique(cells, axis=0)))
+        most = max(most, _count_distinct(cells))
     return most
+
+
+def _count_distinct(cells: NDArray[np.int64]) -> int:
+    """Return how many rows differ, (n, 3)."""
+    ordered = cells[np.lexsort(cells.T)]
+    return 1 + int((ordered[1:] != ordered[:-1]).any(axis=1).sum())
 
 
 def _robust_noise(view: View, centre: Array) -> float:

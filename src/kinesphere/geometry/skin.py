@@ -156,7 +156,7 @@ def fit_through_skin(
     if hinge:
         moved = equations(view, turning, x, inner, whole)[1][:, :, 6:]
         pushed = np.einsum("nki,n,nkj->ij", free, w, moved, optimize=True)
-    scores = np.einsum("nki,n,nk->ni", free, w, strays, optimize=True)
+    scores = np.einsum("nki,nk->ni", free, w[:, None] * strays)
     scatter = scatter_of(scores, share, alike)
     scatter += (SKIN_TOLD * hidden / RIGID) ** 2 * pushed @ pushed.T + doubt
     return SkinFit(x, Told(heard @ curve, heard @ scatter @ heard.T))
