@@ -9,19 +9,6 @@ Array = NDArray[np.float64]
 
 
 @kernel
-def align_signs_kernel(quaternions: Array) -> None:
-    """Give every quaternion, (n, 4), the sign that is nearer to the one before it, in place."""
-    for f in range(1, len(quaternions)):
-        here, before = quaternions[f], quaternions[f - 1]
-        along = 0.0
-        for i in range(4):
-            along += here[i] * before[i]
-        if along < 0.0:
-            for i in range(4):
-                here[i] = -here[i]
-
-
-@kernel
 def both_ways_kernel(section: Array, steady: Array, values: Array, padding: int) -> Array:
     """Return values, (n, 4), filtered forward and then backward.
 

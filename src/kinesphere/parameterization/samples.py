@@ -3,9 +3,10 @@
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import butter, sosfilt_zi
+from scipy.signal import butter, sosfilt_zi, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array, Mask
@@ -14,7 +15,7 @@ from kinesphere.geometry.rotations import (
     quaternions_from_rotations,
     rotation_angle,
 )
-from kinesphere.kernels.low_pass import align_signs_kernel, both_ways_kernel
+from kinesphere.kernels.low_pass import both_ways_kernel
 
 Frames = NDArray[np.intp]
 Phase = tuple[int, int]
@@ -130,23 +131,35 @@ def smooth_rotations(rotations: Array, rate: float, cutoff: float) -> Array:
     """
     if not 0 < cutoff < 0.45 * rate:
         return rotations
-    section, steady = _low_pass(rate, cutoff)
+    sos, steady = _low_pass(rate, cutoff)
     rotations = without_spikes(rotations, rate)
     smooth = rotations.copy()
     for start, stop in runs(np.isfinite(rotations.reshape(-1, 9) @ np.ones(9))):
         if stop - start < 4:
             continue
         q = quaternions_from_rotations(rotations[start:stop])
-        align_signs_kernel(q)
+        _align_signs(q)
         padding = min(stop - start - 1, int(np.ceil(rate / cutoff)))
-        there = both_ways_kernel(section, steady, q, padding)
-        back = both_ways_kernel(section, steady, q[::-1].copy(), padding)
+        there, back = (_both_ways(sos, steady, x, padding) for x in (q, q[::-1].copy()))
         smooth[start:stop] = Rotation.from_quat(there + back[::-1]).as_matrix()
     return smooth
 
 
+def _align_signs(quaternions: Array) -> None:
+    """Give every quaternion, (n, 4), the sign that is nearer to the one before it, in place."""
+    products = np.einsum("ni,ni->n", quaternions[1:], quaternions[:-1])
+    quaternions[1:] *= np.cumprod(np.where(products < 0, -1.0, 1.0))[:, None]
+
+
+def _both_ways(sos: Array, steady: Array, values: Array, padding: int) -> Array:
+    """Return values, (n, 4), filtered forward and then backward."""
+    if getattr(numba.config, "DISABLE_JIT", False):  # uncompiled, the kernel takes very long
+        return np.asarray(sosfiltfilt(sos, values, axis=0, padlen=padding))
+    return both_ways_kernel(sos[0], steady, values, padding)
+
+
 @lru_cache
 def _low_pass(rate: float, cutoff: float) -> tuple[Array, Array]:
-    """Return the coefficients of a Butterworth filter, (6,), and its steady state, (2,)."""
+    """Return the coefficients of a Butterworth filter, (1, 6), and its steady state, (2,)."""
     sos = butter(2, cutoff, fs=rate, output="sos")
-    return sos[0], sosfilt_zi(sos)[0]
+    return sos, sosfilt_zi(sos)[0]
