@@ -11,6 +11,7 @@ from kinesphere.geometry.centre_descent import descend, mean_residual
 from kinesphere.geometry.centre_terms import averaging_share, find_information
 from kinesphere.geometry.centre_views import Turning as Turning
 from kinesphere.geometry.centre_views import View as View
+from kinesphere.geometry.distinct_poses import count_poses
 from kinesphere.geometry.hinge_expectation import open_axis, tighter_along
 from kinesphere.geometry.medians import column_medians
 from kinesphere.geometry.pose_worth import overrated
@@ -20,8 +21,6 @@ from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
 
-CELL = np.deg2rad(10.0)
-"""rad, poses nearer to each other than this count as one: soft tissue errs alike in both."""
 UNKNOWNS = 4
 """A centre's coordinates and a distance to it: so many looks tell nothing."""
 FAR = 10.0
@@ -197,25 +196,6 @@ def _fit(
     # and no number of poses tells a centre better than what lasts lets it be the same
     lasts = (1 - share) * _robust_noise(view, x) ** 2
     return x, Told(information, over * information + lasts * information @ information)
-
-
-def count_poses(view: View, centre: Array) -> int:
-    """Return how many distinct poses there are: cells of `CELL` on the markers' spheres."""
-    most = 1
-    for seen in np.moveaxis(view.points, 1, 0) - centre:
-        y = seen[np.isfinite(seen).all(axis=1)]
-        if len(y) == 0:
-            continue
-        radius = max(float(np.median(lengths(y))), 1e-9)
-        cells = np.floor(y / (radius * CELL)).astype(np.int64)
-        most = max(most, _count_distinct(cells))
-    return most
-
-
-def _count_distinct(cells: NDArray[np.int64]) -> int:
-    """Return how many rows differ, (n, 3)."""
-    ordered = cells[np.lexsort(cells.T)]
-    return 1 + int((ordered[1:] != ordered[:-1]).any(axis=1).sum())
 
 
 def _robust_noise(view: View, centre: Array) -> float:
