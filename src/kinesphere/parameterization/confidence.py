@@ -50,16 +50,20 @@ class AxesQuality:
     readings: Array
     """(n_axes,) rad, how far another reading of the same movement is off, rms by its probability:
     `kinesphere.parameterization.axes.hinge.other_reading`; 0 where there is none."""
+    coupled: Array
+    """(n_axes,) rad, how far movement about other axes that goes with an axis' own may put it off,
+    standard deviation: `kinesphere.parameterization.coupling`; 0 where none does."""
 
     @property
     def uncertainty(self) -> Array:
         """(n_axes,) rad, standard deviation of each axis.
 
         What halves suggest (they have twice the variance of the whole, their difference four
-        times), and what is alike in both: skin, by `TISSUE` over the arc and by `SHARE`, and twist
-        that goes with a hinge's angle.
+        times), and what is alike in both: skin, by `TISSUE` over the arc and by `SHARE`, twist
+        that goes with a hinge's angle, and other movement that goes with an axis' own.
         """
-        return with_skin(np.hypot(self.halves / 2, self.readings), self.ranges)
+        alike = np.hypot(self.readings, self.coupled)
+        return with_skin(np.hypot(self.halves / 2, alike), self.ranges)
 
     def ordered(self, order: Sequence[int]) -> "AxesQuality":
         """Return the same for axes in another order."""
@@ -72,6 +76,7 @@ class AxesQuality:
             halves=self.halves[at],
             heights=self.heights[at],
             readings=self.readings[at],
+            coupled=self.coupled[at],
         )
 
     def only(self, told: int, at: int) -> "AxesQuality":
@@ -93,6 +98,7 @@ class AxesQuality:
             halves=placed(self.halves),
             heights=placed(self.heights),
             readings=placed(self.readings),
+            coupled=placed(self.coupled),
         )
 
 
@@ -124,6 +130,7 @@ def assess_axes(
         halves=halves_disagreement(samples, axes, labels, find, enough),
         heights=heights,
         readings=np.zeros(n_axes),
+        coupled=np.zeros(n_axes),
     )
 
 

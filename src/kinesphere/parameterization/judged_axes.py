@@ -7,15 +7,18 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.geometry.even_frames import parted
 from kinesphere.parameterization.anatomy import nominal_axes, room
+from kinesphere.parameterization.axes.fit import phase_labels
 from kinesphere.parameterization.axes.hinge import other_reading
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.confidence import AxesQuality, assess_axes
+from kinesphere.parameterization.coupling import circling
 from kinesphere.parameterization.doubts import apart, reasons_to_doubt, uncertain
 from kinesphere.parameterization.free_hinge import worse_than_body
 from kinesphere.parameterization.free_pair import (
     CLOSEST,
     free_ranges,
     in_free_motion,
+    shared_rhythm,
     too_short,
 )
 from kinesphere.parameterization.halves import (
@@ -82,6 +85,10 @@ def judged(
     if n_axes == 1 and options.refine and options.method in BY_ORIENTATION:
         quality = replace(quality, readings=np.array([other_reading(samples, axes[0])]))
     nominal = nominal_axes(view.name, axes) if view.human else None
+    if not free:
+        # a hinge has but one axis, whatever it does; beside main movements there is free motion
+        whole = view.samples if n_axes == 1 else samples
+        quality = replace(quality, coupled=circling(whole, axes, phase_labels(whole, axes)))
     positions = view.samples.positions
     if free and (short := too_short(samples)):
         return MovementAxes(axes, quality, (short,))
@@ -90,7 +97,7 @@ def judged(
     else:
         if free:
             ranges, beyond = free_ranges(view, axes)
-            quality = replace(quality, ranges=ranges)
+            quality = replace(quality, ranges=ranges, coupled=shared_rhythm(samples, axes))
             closest = max(CLOSEST, options.smallest_angle)
             options = replace(options, smallest_explained=0.0, smallest_angle=closest)
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
