@@ -8,16 +8,13 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.parameterization.arcs import arcs_about
 from kinesphere.parameterization.axes.fit import Labels, phase_swing
+from kinesphere.parameterization.coupling import SHARE
 from kinesphere.parameterization.halves import Finder, halves_disagreement
 from kinesphere.parameterization.samples import JointSamples
 
 TISSUE = np.deg2rad(3.0)
 """rad, by which skin turns a limb over a movement, short or long: two knees of one person were 1 to
 14° off in arcs of 58 to 12°, 3.2° rms over the arc beside what their halves say."""
-SHARE = 0.07
-"""rad for a rad of the movement, that skin comes back about another axis, which turns the axis as
-much however long the arc; two knees of one person twist by 0.077 and 0.068 with their angle, which
-is such a share, of skin or not. About the limb itself `AxesQuality.readings` tells it."""
 
 
 def with_tissue(uncertainty: Array, ranges: Array) -> Array:

@@ -1,10 +1,18 @@
 """Movement about another axis that goes with a main one: how far that may put the axis off."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from kinesphere.data import Array
-from kinesphere.parameterization.axes.fit import Labels, phase_swing
+from kinesphere.data import Array, Motion
+from kinesphere.parameterization.axes.fit import Labels, phase_labels, phase_swing
 from kinesphere.parameterization.samples import JointSamples
+
+SHARE = 0.07
+"""rad for a rad of the movement, that skin comes back about another axis, which turns the axis as
+much however long the arc; two knees of one person twist by 0.077 and 0.068 with their angle, which
+is such a share, of skin or not. About the limb itself `AxesQuality.readings` tells it."""
+EVERY = 0.1  # s, between frames that tell how far neighbours move
 
 
 def circling(samples: JointSamples, axes: Array, labels: Labels) -> Array:
@@ -46,3 +54,85 @@ def circling(samples: JointSamples, axes: Array, labels: Labels) -> Array:
         late[k] += float((b - b.mean()) @ speed) ** 2 / max(float(speed @ speed), 1e-300)
         main[k] += float(a @ a)
     return np.asarray(np.arctan(np.sqrt(late / np.maximum(main, 1e-300))))
+
+
+@dataclass(frozen=True, eq=False)
+class Neighbours:
+    """How limbs move at the joints that share a limb with one."""
+
+    directions: tuple[Array, ...] = ()
+    """(n_few, 3) each, the child's long axis in its parent, every ``stride`` frames; NaN where
+    unseen."""
+    stride: int = 1
+
+    def arcs(self, samples: JointSamples, labels: Labels, n_axes: int) -> Array:
+        """Return how far they move in the phases about each axis, together, (n_axes,) rad.
+
+        An arc is twice the way from its middle; of several joints the root of the sum of squares,
+        of several phases the root mean square.
+        """
+        squares, counts = np.zeros(n_axes), np.zeros(n_axes)
+        at = np.arange(len(samples.rotations)) if samples.frames is None else samples.frames
+        for (a, b), k in zip(samples.phases, labels, strict=True):
+            if k >= 0:
+                first, last = at[a] // self.stride, at[b - 1] // self.stride
+                counts[k] += 1
+                squares[k] += sum(_arc(p[first : last + 1]) ** 2 for p in self.directions)
+        return np.asarray(np.sqrt(squares / np.maximum(counts, 1)))
+
+
+def _arc(directions: Array) -> float:
+    known = directions[np.isfinite(directions[:, 0])]
+    if len(known) == 0:
+        return 0.0
+    middle = known.mean(axis=0)
+    middle /= max(float(np.linalg.norm(middle)), 1e-9)
+    return 2 * float(np.arccos(np.clip(known @ middle, -1, 1)).max())
+
+
+def neighbours_of(motion: Motion) -> list[Neighbours]:
+    """Return the neighbours of every joint."""
+    skeleton = motion.skeleton
+    stride = max(1, round(EVERY * motion.rate))
+    world = motion.rotations[::stride]
+    limbs = [(skeleton.parents[j + 1], j + 1) for j in range(len(skeleton.joints))]
+    directions = [
+        np.einsum("nji,nj->ni", world[:, parent], world[:, child] @ skeleton.limbs[child].long_axis)
+        for parent, child in limbs
+    ]
+    return [
+        Neighbours(
+            tuple(
+                directions[i]
+                for i, other in enumerate(limbs)
+                if i != j and set(other) & set(limbs[j])
+            ),
+            stride,
+        )
+        for j in range(len(limbs))
+    ]
+
+
+def coupling(
+    samples: JointSamples, axes: Array, ranges: Array, neighbours: Neighbours
+) -> Array:
+    """Return how far other movement may put axes off that goes with their own, (n_axes,) rad.
+
+    Circling, and skin: of a joint's two limbs it also goes with their other joints, by `SHARE` of
+    how far those move. Where they do and the joint itself hardly does, skin is the movement.
+
+    Parameters
+    ----------
+    samples
+        One joint.
+    axes : (n_axes, 3)
+    ranges : (n_axes,)
+        rad, how far the joint moves about each.
+    neighbours
+        Of the joint.
+    """
+    labels = phase_labels(samples, axes)
+    skin = SHARE * neighbours.arcs(samples, labels, len(axes))
+    return np.asarray(
+        np.hypot(circling(samples, axes, labels), np.arctan2(skin, np.maximum(ranges, 1e-9)))
+    )

@@ -7,11 +7,10 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.geometry.even_frames import parted
 from kinesphere.parameterization.anatomy import nominal_axes, room
-from kinesphere.parameterization.axes.fit import phase_labels
 from kinesphere.parameterization.axes.hinge import other_reading
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.confidence import AxesQuality, assess_axes
-from kinesphere.parameterization.coupling import circling
+from kinesphere.parameterization.coupling import coupling
 from kinesphere.parameterization.doubts import apart, reasons_to_doubt, uncertain
 from kinesphere.parameterization.free_hinge import worse_than_body
 from kinesphere.parameterization.free_pair import (
@@ -88,7 +87,8 @@ def judged(
     if not free:
         # a hinge has but one axis, whatever it does; beside main movements there is free motion
         whole = view.samples if n_axes == 1 else samples
-        quality = replace(quality, coupled=circling(whole, axes, phase_labels(whole, axes)))
+        coupled = coupling(whole, axes, quality.ranges, view.neighbours)
+        quality = replace(quality, coupled=coupled)
     positions = view.samples.positions
     if free and (short := too_short(samples)):
         return MovementAxes(axes, quality, (short,))
@@ -105,13 +105,13 @@ def judged(
     if nominal is not None and n_axes == 1 and worse_than_body(axes[0], nominal[0], positions):
         doubts.append("the body frame's axis suits all the movement clearly better")
     pair = n_axes == 2 and not free
-    told = axis_told(quality, axes, view, options) if doubts and pair else None
+    told = axis_told(quality, axes, samples, view, options) if doubts and pair else None
     if doubts and told is None:
         return MovementAxes(axes, quality, tuple(doubts))
     quality, apart_by, alone = _contradicted(view, samples, axes, n_axes, quality, search, settings)
     if not doubts:
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
-    told = axis_told(quality, axes, view, options) if doubts and pair else None
+    told = axis_told(quality, axes, samples, view, options) if doubts and pair else None
     if told is not None and alone[told] > doubtful:
         # another axis told would speak for it; alone it gives way to halves that are less alike
         doubts.append(

@@ -6,11 +6,13 @@ import numpy as np
 
 from kinesphere.data import Array, Codes, Mask, PoseFlag
 from kinesphere.geometry.even_frames import parted
+from kinesphere.parameterization.coupling import Neighbours
 from kinesphere.parameterization.movement_filter import Movement, find_movement
 from kinesphere.parameterization.samples import JointSamples, runs, smooth_rotations
 from kinesphere.parameterization.settings import ParameterizationSettings
 
 FAIR_SHARE = 0.25  # of the seen frames; the others may show movements that these do not
+NONE = Neighbours()
 EDGE = 0.01  # of a frame: a frame on the edge of a window is inside, however its time is rounded
 
 
@@ -32,6 +34,8 @@ class JointView:
     """(n_frames,) seen and reliable frames that axes and rest are taken from."""
     human: bool = True
     """Whether anatomy says where this joint can have an axis."""
+    neighbours: Neighbours = NONE
+    """How limbs move at the joints that share a limb with this one."""
 
     @property
     def gravity(self) -> Array:
@@ -82,6 +86,7 @@ def view_joint(
     calibration: Mask,
     settings: ParameterizationSettings,
     human: bool = True,
+    neighbours: Neighbours = NONE,
 ) -> JointView:
     """Smooth one joint's rotations and find its movement phases; arguments as in `JointView`.
 
@@ -107,7 +112,9 @@ def view_joint(
     samples = JointSamples(
         smooth, smooth @ long_axis, phases, rate, long_axis, frames, rotations[frames]
     )
-    return JointView(name, rotations, long_axis, twist_known, samples, movement, chosen, human)
+    return JointView(
+        name, rotations, long_axis, twist_known, samples, movement, chosen, human, neighbours
+    )
 
 
 def view_halves(view: JointView, settings: ParameterizationSettings) -> tuple[JointView, JointView]:
@@ -126,6 +133,7 @@ def view_halves(view: JointView, settings: ParameterizationSettings) -> tuple[Jo
             half,
             settings,
             view.human,
+            view.neighbours,
         )
         for half in (early, late)
     )
