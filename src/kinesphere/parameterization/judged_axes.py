@@ -8,6 +8,7 @@ from kinesphere.data import Array
 from kinesphere.geometry.even_frames import parted
 from kinesphere.parameterization.anatomy import nominal_axes, room
 from kinesphere.parameterization.axes.hinge import other_reading
+from kinesphere.parameterization.axes.refinement import other_readings
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.confidence import AxesQuality, assess_axes
 from kinesphere.parameterization.coupling import coupling
@@ -81,8 +82,10 @@ def judged(
     doubtful = 2 * np.deg2rad(options.largest_uncertainty)
     # a search in free motion takes seconds: once halves contradict each other that is that
     quality = assess_axes(samples, axes, find, doubtful if free else np.inf)
-    if n_axes == 1 and options.refine and options.method in BY_ORIENTATION:
-        quality = replace(quality, readings=np.array([other_reading(samples, axes[0])]))
+    if options.refine and options.method in BY_ORIENTATION:
+        one = n_axes == 1
+        readings = [other_reading(samples, axes[0])] if one else other_readings(samples, axes)
+        quality = replace(quality, readings=np.asarray(readings))
     nominal = nominal_axes(view.name, axes) if view.human else None
     if not free:
         # a hinge has but one axis, whatever it does; beside main movements there is free motion
