@@ -115,12 +115,17 @@ def judged(
     if not doubts:
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
     told = axis_told(quality, axes, samples, view, options) if doubts and pair else None
-    if told is not None and alone[told] > doubtful:
-        # another axis told would speak for it; alone it gives way to halves that are less alike
-        doubts.append(
-            f"halves of the time put the axis that is told {np.rad2deg(alone[told]):.0f}° apart"
-        )
-        told = None
+    if told is not None:
+        # another axis told would speak for it; alone it is as uncertain as halves of the time say
+        # that move as far, however few phases one has
+        apart_as_far = np.where(np.arange(len(axes)) == told, alone, np.nan)
+        quality = replace(quality, halves=np.fmax(quality.halves, apart_as_far))
+        apart_by = np.fmax(apart_by, quality.halves)
+        if axis_told(quality, axes, samples, view, options) != told:
+            doubts.append(
+                f"halves of the time put the axis that is told {np.rad2deg(alone[told]):.0f}° apart"
+            )
+            told = None
     remark = _remark(quality, apart_by, told, settings.axes)
     return MovementAxes(axes, quality, tuple(doubts), remark, told)
 
