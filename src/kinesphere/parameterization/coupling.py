@@ -1,5 +1,6 @@
 """Movement about another axis that goes with a main one: how far that may put the axis off."""
 
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,7 @@ SHARE = 0.07
 """rad for a rad of the movement, that skin comes back about another axis, which turns the axis as
 much however long the arc; two knees of one person twist by 0.077 and 0.068 with their angle, which
 is such a share, of skin or not. About the limb itself `AxesQuality.readings` tells it."""
+MOST_JOINTS = 2  # of a limb whose skin goes with them; trunk and pelvis are too wide to turn with it
 EVERY = 0.1  # s, between frames that tell how far neighbours move
 
 
@@ -64,6 +66,8 @@ class Neighbours:
     """(n_few, 3) each, the child's long axis in its parent, every ``stride`` frames; NaN where
     unseen."""
     stride: int = 1
+    wide: bool = False
+    """Whether the child is as wide as trunk or pelvis."""
 
     def arcs(self, samples: JointSamples, labels: Labels, n_axes: int) -> Array:
         """Return how far they move in the phases about each axis, together, (n_axes,) rad.
@@ -91,7 +95,7 @@ def _arc(directions: Array) -> float:
 
 
 def neighbours_of(motion: Motion) -> list[Neighbours]:
-    """Return the neighbours of every joint."""
+    """Return the neighbours of every joint: those at the other end of a limb that has two ends."""
     skeleton = motion.skeleton
     stride = max(1, round(EVERY * motion.rate))
     world = motion.rotations[::stride]
@@ -100,16 +104,19 @@ def neighbours_of(motion: Motion) -> list[Neighbours]:
         np.einsum("nji,nj->ni", world[:, parent], world[:, child] @ skeleton.limbs[child].long_axis)
         for parent, child in limbs
     ]
+    ends = Counter(limb for pair in limbs for limb in pair)
+    narrow = {limb for limb, count in ends.items() if count <= MOST_JOINTS}
     return [
         Neighbours(
             tuple(
                 directions[i]
                 for i, other in enumerate(limbs)
-                if i != j and set(other) & set(limbs[j])
+                if i != j and set(other) & set(mine) & narrow
             ),
             stride,
+            mine[1] not in narrow,
         )
-        for j in range(len(limbs))
+        for j, mine in enumerate(limbs)
     ]
 
 

@@ -84,8 +84,12 @@ def judged(
     quality = assess_axes(samples, axes, find, doubtful if free else np.inf)
     if options.refine and options.method in BY_ORIENTATION:
         one = n_axes == 1
-        readings = [other_reading(samples, axes[0])] if one else other_readings(samples, axes)
-        quality = replace(quality, readings=np.asarray(readings))
+        readings = (
+            np.array([other_reading(samples, axes[0])])
+            if one
+            else other_readings(samples, axes, view.neighbours.wide)
+        )
+        quality = replace(quality, readings=readings)
     nominal = nominal_axes(view.name, axes) if view.human else None
     if not free:
         # a hinge has but one axis, whatever it does; beside main movements there is free motion

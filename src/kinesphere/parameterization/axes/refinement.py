@@ -7,7 +7,7 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.parameterization.axes.cone_and_twist import ConeAndTwist
 from kinesphere.parameterization.axes.fit import phase_labels
-from kinesphere.parameterization.axes.hinge import off_by_probability
+from kinesphere.parameterization.axes.hinge import USUAL_COUPLING, off_by_probability
 from kinesphere.parameterization.axes.likeliest import likeliest_axis
 from kinesphere.parameterization.samples import JointSamples
 
@@ -41,7 +41,7 @@ def refine_axes(samples: JointSamples, axes: Array) -> Array:
     return np.asarray(refined)
 
 
-def other_readings(samples: JointSamples, axes: Array) -> Array:
+def other_readings(samples: JointSamples, axes: Array, wide: bool = False) -> Array:
     """Return how far each axis may be off for taking twist as error, (n_axes,) rad.
 
     As `kinesphere.parameterization.axes.hinge.other_reading`, but every phase has its own cone.
@@ -52,11 +52,14 @@ def other_readings(samples: JointSamples, axes: Array) -> Array:
         One joint.
     axes : (n_axes, 3)
         From `refine_axes`.
+    wide
+        Whether the limb is as wide as a trunk: such turn less about themselves with the angle.
     """
+    usual = USUAL_COUPLING if wide else USUAL_TWIST
     off = np.zeros(len(axes))
     for k, errors in _errors(samples, axes):
-        other = likeliest_axis(errors, axes[k], ROUNDS, coupling=USUAL_TWIST)
-        off[k] = off_by_probability(other, axes[k], USUAL_TWIST)
+        other = likeliest_axis(errors, axes[k], ROUNDS, coupling=usual)
+        off[k] = off_by_probability(other, axes[k], usual)
     return off
 
 
