@@ -13,7 +13,9 @@ SHARE = 0.07
 """rad for a rad of the movement, that skin comes back about another axis, which turns the axis as
 much however long the arc; two knees of one person twist by 0.077 and 0.068 with their angle, which
 is such a share, of skin or not. About the limb itself `AxesQuality.readings` tells it."""
-MOST_JOINTS = 2  # of a limb whose skin goes with them; trunk and pelvis are too wide to turn with it
+MOST_JOINTS = (
+    2  # of a limb whose skin goes with them; trunk and pelvis are too wide to turn with it
+)
 EVERY = 0.1  # s, between frames that tell how far neighbours move
 
 
@@ -120,9 +122,7 @@ def neighbours_of(motion: Motion) -> list[Neighbours]:
     ]
 
 
-def coupling(
-    samples: JointSamples, axes: Array, ranges: Array, neighbours: Neighbours
-) -> Array:
+def coupling(samples: JointSamples, axes: Array, ranges: Array, neighbours: Neighbours) -> Array:
     """Return how far other movement may put axes off that goes with their own, (n_axes,) rad.
 
     Circling, and skin: of a joint's two limbs it also goes with their other joints, by `SHARE` of

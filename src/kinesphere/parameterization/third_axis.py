@@ -123,6 +123,7 @@ def _without(view: JointView, twist: TwistAxis, settings: ParameterizationSettin
         calibration,
         settings,
         view.human,
+        view.neighbours,
     )
 
 
