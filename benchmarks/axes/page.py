@@ -6,10 +6,10 @@ from typing import Any
 from benchmarks.axes import (
     angles,
     bends,
+    doubts,
     estimators,
     filters,
     free_motion,
-    doubts,
     free_served,
     halves_alone,
     normalization,

@@ -52,6 +52,11 @@ class AxesQuality:
     standard deviation: `kinesphere.parameterization.coupling`; 0 where none does."""
 
     @property
+    def alike(self) -> Array:
+        """(n_axes,) rad, what no halving shows, for it goes with the movement: twist and others."""
+        return np.hypot(self.readings, self.coupled)
+
+    @property
     def uncertainty(self) -> Array:
         """(n_axes,) rad, standard deviation of each axis.
 
@@ -59,8 +64,7 @@ class AxesQuality:
         times), and what is alike in both: skin, by `TISSUE` over the arc and by `SHARE`, twist
         that goes with a hinge's angle, and other movement that goes with an axis' own.
         """
-        alike = np.hypot(self.readings, self.coupled)
-        return with_skin(np.hypot(self.halves / 2, alike), self.ranges)
+        return with_skin(np.hypot(self.halves / 2, self.alike), self.ranges)
 
     def ordered(self, order: Sequence[int]) -> "AxesQuality":
         """Return the same for axes in another order."""

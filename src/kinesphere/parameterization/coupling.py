@@ -13,9 +13,7 @@ SHARE = 0.07
 """rad for a rad of the movement, that skin comes back about another axis, which turns the axis as
 much however long the arc; two knees of one person twist by 0.077 and 0.068 with their angle, which
 is such a share, of skin or not. About the limb itself `AxesQuality.readings` tells it."""
-MOST_JOINTS = (
-    2  # of a limb whose skin goes with them; trunk and pelvis are too wide to turn with it
-)
+MOST_JOINTS = 2  # of a limb whose skin turns with them; trunk and pelvis are too wide for that
 EVERY = 0.1  # s, between frames that tell how far neighbours move
 
 
