@@ -90,9 +90,9 @@ CONDITIONS: Mapping[str, Made] = {
         FREE,
         FREE_JOINTS,
     ),
-    "free, 60 s, no rhythm": (
+    "free, 20 s, no rhythm": (
         lambda rng: make_free_motion(
-            rng, CONES["60–120°"], NOISES["OU 1°"], twist=10.0, seconds=60.0, rhythm=False
+            rng, CONES["60–120°"], NOISES["OU 1°"], twist=10.0, rhythm=False
         ),
         FREE,
         FREE_JOINTS,

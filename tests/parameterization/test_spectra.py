@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.axes.generator import CONES, NOISES, RATE, make_free_motion, poses, spoil
 from benchmarks.axes.doubts import one_rhythm
+from benchmarks.axes.generator import CONES, NOISES, RATE, make_free_motion, poses, spoil
 from benchmarks.axes.measures import line_angles
 from numpy.testing import assert_allclose
 from scipy.signal import lfilter

@@ -59,7 +59,7 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
     axes = [np.stack([reference @ fit[1], fit[0]]) for fit in ends if fit is not None]
     if not axes:
         return np.empty((0, 3))
-    if not settings.refine or len(moving) < SHORTEST * samples.rate:
+    if not settings.refine or len(moving) < SHORTEST / 2 * samples.rate:  # halves are shorter
         return axes[0]
     motion = free_motion_of(samples)
     smooth = likeliest_axes(motion, axes)
