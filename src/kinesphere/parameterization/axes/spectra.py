@@ -184,7 +184,7 @@ def _round(motion: FreeMotion, stretches: list[Stretch], belief: _Belief, near: 
         usual=_spectra(stretches, squares, belief.usual, near),
         step=step,
         cost=float(cost),
-        spread=spread[3:, 3:],
+        spread=np.asarray(spread[3:, 3:], dtype=np.float64),
     )
 
 
