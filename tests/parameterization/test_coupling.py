@@ -149,7 +149,7 @@ def chain():
 
 def test_neighbours_share_a_narrow_limb():
     hip, knee, neck, shoulder = neighbours_of(chain())
-    assert [len(one.directions) for one in (hip, knee, neck, shoulder)] == [1, 1, 0, 0]
+    assert [len(one.pairs) for one in (hip, knee, neck, shoulder)] == [1, 1, 0, 0]
     samples = samples_of(np.zeros((N, 3)), phases=1)
     labels = np.zeros(1, dtype=int)
     assert np.rad2deg(hip.arcs(samples, labels, 1)) == pytest.approx([60.0], abs=3.0)

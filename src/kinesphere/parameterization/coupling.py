@@ -1,20 +1,19 @@
 """Movement about another axis that goes with a main one: how far that may put the axis off."""
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from kinesphere.data import Array, Motion
-from kinesphere.parameterization.axes.fit import Labels, phase_labels, phase_swing
-from kinesphere.parameterization.samples import JointSamples
+from kinesphere.parameterization.axes.fit import Labels, phase_labels, phase_swing, thinned
+from kinesphere.parameterization.samples import Frames, JointSamples
 
 SHARE = 0.07
 """rad for a rad of the movement, that skin comes back about another axis, which turns the axis as
 much however long the arc; two knees of one person twist by 0.077 and 0.068 with their angle, which
 is such a share, of skin or not. About the limb itself `AxesQuality.readings` tells it."""
 MOST_JOINTS = 2  # of a limb whose skin turns with them; trunk and pelvis are too wide for that
-EVERY = 0.1  # s, between frames that tell how far neighbours move
 
 
 def circling(samples: JointSamples, axes: Array, labels: Labels) -> Array:
@@ -62,10 +61,10 @@ def circling(samples: JointSamples, axes: Array, labels: Labels) -> Array:
 class Neighbours:
     """How limbs move at the joints that share a limb with one."""
 
-    directions: tuple[Array, ...] = ()
-    """(n_few, 3) each, the child's long axis in its parent, every ``stride`` frames; NaN where
-    unseen."""
-    stride: int = 1
+    rotations: Array = field(default_factory=lambda: np.empty((0, 0, 3, 3)))
+    """(n_frames, n_limbs, 3, 3) ``world_from_limb`` of the whole motion; NaN where unseen."""
+    pairs: tuple[tuple[int, int, Array], ...] = ()
+    """Of each such joint parent, child and the child's long axis, (3,)."""
     wide: bool = False
     """Whether the child is as wide as trunk or pelvis."""
 
@@ -77,43 +76,38 @@ class Neighbours:
         """
         squares, counts = np.zeros(n_axes), np.zeros(n_axes)
         at = np.arange(len(samples.rotations)) if samples.frames is None else samples.frames
-        for (a, b), k in zip(samples.phases, labels, strict=True):
+        for phase, k in zip(samples.phases, labels, strict=True):
             if k >= 0:
-                first, last = at[a] // self.stride, at[b - 1] // self.stride
                 counts[k] += 1
-                squares[k] += sum(_arc(p[first : last + 1]) ** 2 for p in self.directions)
+                frames = at[thinned(phase)]
+                squares[k] += sum(self._arc(frames, *pair) ** 2 for pair in self.pairs)
         return np.asarray(np.sqrt(squares / np.maximum(counts, 1)))
 
-
-def _arc(directions: Array) -> float:
-    known = directions[np.isfinite(directions[:, 0])]
-    if len(known) == 0:
-        return 0.0
-    middle = known.mean(axis=0)
-    middle /= max(float(np.linalg.norm(middle)), 1e-9)
-    return 2 * float(np.arccos(np.clip(known @ middle, -1, 1)).max())
+    def _arc(self, frames: Frames, parent: int, child: int, long_axis: Array) -> float:
+        above, below = self.rotations[frames, parent], self.rotations[frames, child]
+        directions = np.einsum("nji,nj->ni", above, below @ long_axis)
+        known = directions[np.isfinite(directions[:, 0])]
+        if len(known) == 0:
+            return 0.0
+        middle = known.mean(axis=0)
+        middle /= max(float(np.linalg.norm(middle)), 1e-9)
+        return 2 * float(np.arccos(np.clip(known @ middle, -1, 1)).max())
 
 
 def neighbours_of(motion: Motion) -> list[Neighbours]:
     """Return the neighbours of every joint: those at the other end of a limb that has two ends."""
     skeleton = motion.skeleton
-    stride = max(1, round(EVERY * motion.rate))
-    world = motion.rotations[::stride]
     limbs = [(skeleton.parents[j + 1], j + 1) for j in range(len(skeleton.joints))]
-    directions = [
-        np.einsum("nji,nj->ni", world[:, parent], world[:, child] @ skeleton.limbs[child].long_axis)
-        for parent, child in limbs
-    ]
     ends = Counter(limb for pair in limbs for limb in pair)
     narrow = {limb for limb, count in ends.items() if count <= MOST_JOINTS}
     return [
         Neighbours(
+            motion.rotations,
             tuple(
-                directions[i]
+                (*other, skeleton.limbs[other[1]].long_axis)
                 for i, other in enumerate(limbs)
                 if i != j and set(other) & set(mine) & narrow
             ),
-            stride,
             mine[1] not in narrow,
         )
         for j, mine in enumerate(limbs)
