@@ -5,8 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.ndimage import gaussian_filter1d
 
-from kinesphere.geometry.linkage import Linkage, by_pose_of, misfit
+from kinesphere.geometry.linkage import Linkage, by_pose_of, equations, idle, misfit
 from kinesphere.geometry.linkage_fit import fit_linkage, pose_linkage
+from kinesphere.geometry.linkage_shake import averaging_share, cleared_of_shake
 from kinesphere.geometry.rotations import rotation_angle, rotation_exp
 
 FRAMES = 150
@@ -32,7 +33,7 @@ def hung(rng):
 
 def markers(linkage):
     empty = np.zeros((FRAMES, sum(len(s) for s in linkage.shapes), 3))
-    return misfit(linkage, empty, np.ones(empty.shape[:2], dtype=bool))[0]
+    return misfit(linkage, empty, np.ones(empty.shape[:2], dtype=bool))
 
 
 def shaken(rng, linkage, size=0.01, turn=0.2):
@@ -86,6 +87,28 @@ def test_what_is_told_says_how_far_off_centres_are(rng, hung):
     assert 0.4 < ratio < 2.0
 
 
+def test_an_expectation_does_not_turn_a_body_in_its_own_frame(rng, hung):
+    """No marker tells such a turn: a centre off its expectation once drew it on for ever."""
+    points = markers(hung) + 0.001 * rng.normal(size=(FRAMES, sum(COUNTS), 3))
+    expected = hung.centres + np.array([0.0, 0.0, 0.04])
+    prior = np.array([0.0, 1e4, 1e4])
+    few, many = (
+        fit_linkage(hung, points, expected, prior, 20.0, rounds=rounds).linkage
+        for rounds in (10, 200)
+    )
+    for one, other in zip((*few.shapes, few.centres), (*many.shapes, many.centres), strict=True):
+        assert_allclose(one, other, atol=1e-5)
+
+
+def test_steps_that_turn_a_body_in_its_own_frame_fit_alike(rng, hung):
+    points = markers(hung)
+    steps = idle(hung)
+    assert steps.shape == (3 * (COUNTS[1] + COUNTS[2] + 2), 6)
+    weights = np.ones(points.shape[:2])
+    told = equations(hung, 0.0 * points, weights).told
+    assert_allclose(told @ steps, 0.0, atol=1e-4 * np.abs(told).max())  # poses are held a little
+
+
 def test_poses_alone_come_back(rng, hung):
     start = hung._replace(rotations=shaken(rng, hung, turn=0.1).rotations)
     start.rotations[:, 0] = hung.rotations[:, 0]
@@ -103,3 +126,31 @@ def test_markers_follow_poses_as_differences_say(rng, hung):
         turned[:, 1] = rotation_exp(np.tile(step * np.eye(3)[k], (FRAMES, 1))) @ turned[:, 1]
         slope = (markers(hung._replace(rotations=turned)) - points) / step
         assert_allclose(slope, by_pose[..., 3 + k], atol=1e-6)
+
+
+def on_a_hinge(rng, linkage, axis):
+    """Return the linkage with the last body turning about one axis of the middle one."""
+    rotations = linkage.rotations.copy()
+    rotations[:, 2] = rotations[:, 1] @ rotation_exp(smooth(rng, 0.5)[:, :1] * axis)
+    return linkage._replace(rotations=rotations)
+
+
+@pytest.mark.parametrize("hinge", [False, True])
+def test_what_noise_feigns_along_a_hinge_is_not_told(rng, hung, hinge):
+    axis = np.array([0.6, 0.0, 0.8])
+    linkage = on_a_hinge(rng, hung, axis) if hinge else hung
+    points = markers(linkage) + 0.002 * rng.normal(size=(FRAMES, sum(COUNTS), 3))
+    fit = fit_linkage(linkage, points, linkage.centres, np.array([0.0, 1.0, 1.0]), float(FRAMES))
+    seen = np.ones(points.shape[:2], dtype=bool)
+    told = cleared_of_shake(fit, seen, np.ones(3), linkage.centres, np.full(3, 0.05))
+    # the middle body has turned in its own frame: along the hinge is where least is told
+    kept = np.linalg.eigvalsh(told[2].pull)[0] / np.linalg.eigvalsh(fit.information[2])[0]
+    assert kept < 0.3 if hinge else kept > 0.8
+
+
+def test_what_averages_out_is_as_much_where_markers_hide(rng, hung):
+    points = markers(hung) + 0.002 * rng.normal(size=(FRAMES, sum(COUNTS), 3))
+    whole = averaging_share(hung, points)
+    points[rng.random(points.shape[:2]) < 0.5] = np.nan
+    assert averaging_share(hung, points) == pytest.approx(whole, abs=0.15)
+    assert whole > 0.8
