@@ -7,11 +7,13 @@ import numpy as np
 from kinesphere.data import Array, Codes, Mask, PoseFlag
 from kinesphere.geometry.even_frames import parted
 from kinesphere.geometry.rotations import carried
+from kinesphere.parameterization.coupling import Neighbours
 from kinesphere.parameterization.movement_filter import Movement, limb_speeds, movement_of
 from kinesphere.parameterization.samples import JointSamples, runs, smooth_rotations
 from kinesphere.parameterization.settings import ParameterizationSettings
 
 FAIR_SHARE = 0.25  # of the seen frames; the others may show movements that these do not
+NONE = Neighbours()
 EDGE = 0.01  # of a frame: a frame on the edge of a window is inside, however its time is rounded
 
 
@@ -45,6 +47,8 @@ class JointView:
     """All frames, those outside the calibration too."""
     human: bool = True
     """Whether anatomy says where this joint can have an axis."""
+    neighbours: Neighbours = NONE
+    """How limbs move at the joints that share a limb with this one."""
 
     @property
     def gravity(self) -> Array:
@@ -96,6 +100,7 @@ def view_joint(
     settings: ParameterizationSettings,
     human: bool = True,
     smoothed: Smoothed | None = None,
+    neighbours: Neighbours = NONE,
 ) -> JointView:
     """Smooth one joint's rotations and find its movement phases; arguments as in `JointView`.
 
@@ -127,7 +132,16 @@ def view_joint(
         smooth, carried(smooth, long_axis), phases, rate, long_axis, frames, rotations[frames]
     )
     return JointView(
-        name, rotations, long_axis, twist_known, samples, movement, chosen, smoothed, human
+        name,
+        rotations,
+        long_axis,
+        twist_known,
+        samples,
+        movement,
+        chosen,
+        smoothed,
+        human,
+        neighbours,
     )
 
 
@@ -148,6 +162,7 @@ def view_halves(view: JointView, settings: ParameterizationSettings) -> tuple[Jo
             settings,
             view.human,
             view.smoothed,
+            view.neighbours,
         )
         for half in (early, late)
     )
