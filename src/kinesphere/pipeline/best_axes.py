@@ -47,10 +47,10 @@ def with_best_axes(
     Laboratories record a functional trial for each joint, or for each of its axes. Of all that is
     told of a joint, that serves which tells most of its axes, then what is doubted of fewest, then
     the one with the smallest largest uncertainty; that may be one axis of this recording and one
-    of that, turned into the frames of the first by the markers on the parent; what serves is turned
-    into the frames of this skeleton in the same way, with its rest orientation. What twist that goes
-    with a hinge's angle makes unsure does not count: it is the same in every recording, and a long
-    movement only shows it. In which order recordings are given does not matter.
+    of that, turned into the frames of the first by the markers on the parent. So is what serves,
+    with its rest orientation, into the frames of this skeleton. What twist that goes with a hinge's
+    angle makes unsure does not count: it is the same in every recording, and a long movement only
+    shows it. In which order recordings are given does not matter.
 
     Parameters
     ----------

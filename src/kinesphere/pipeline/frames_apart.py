@@ -12,12 +12,6 @@ FRAMES = np.deg2rad(4.0)
 frames of a limb differ by 4.6° (median of 231 pairs over seven functional trials)."""
 
 
-ELSEWHERE = 0.05
-"""m, by which the ends of a limb may lie apart beside its markers: a plate that was strapped on anew
-is the same body somewhere else, and no residual tells. In one session ends are up to 31 mm apart
-(231 limbs)."""
-
-
 class Turn(NamedTuple):
     """From one recording's frame of a limb into another's."""
 
@@ -33,8 +27,8 @@ def turn_between(limb: Limb, other: Limb) -> Turn:
     """Return the rotation from the other's frame into the limb's, by the markers on both.
 
     Skin, or markers that were put on anew, show in how badly they fit: where that leaves more open
-    than the two default positions do, where the limb would begin elsewhere, or where the limbs
-    share no three markers that are off a line, frames with one name are taken for the same.
+    than the two default positions do, or where the limbs share no three markers that are off a
+    line, frames with one name are taken for the same.
 
     The turn is as unsure as the rotation about the markers' longest line. Three markers that were
     put on 3 mm anew are so used in 3 of 5 cases, 10 mm in 1 of 11, six of them 10 mm in 19 of 20,
@@ -55,10 +49,8 @@ def turn_between(limb: Limb, other: Limb) -> Turn:
     fit = fit_rigid(there, here[None])
     if not fit.fitted[0]:
         return _named("markers on a line")
-    rotation, shift = np.asarray(fit.rotations[0]), fit.shifts[0]
-    if np.linalg.norm(shift) > ELSEWHERE:
-        return _named("markers elsewhere on the limb")
-    left = here - there @ rotation.T - shift
+    rotation = np.asarray(fit.rotations[0])
+    left = here - there @ rotation.T - fit.shifts[0]
     noise = np.sqrt((left**2).sum() / (3 * n - 6))  # m, of one coordinate of one marker
     spread = np.linalg.svd(here - here.mean(axis=0), compute_uv=False)[1]  # across the longest line
     unsure = float(noise / spread)
