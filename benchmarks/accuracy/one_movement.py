@@ -19,7 +19,7 @@ _TWICE = ("root_positions", "root_rotations", "twists", "residuals", "flags", "m
 
 
 def one_movement(performance: Performance, about: int, scatter_deg: float, seed: int) -> Recording:
-    """Return a recording in which every joint moves about one axis or all, twice, under correlated noise.
+    """Return a recording in which every joint moves about one axis, twice, in correlated noise.
 
     Parameters
     ----------

@@ -57,9 +57,9 @@ def table(errors: dict[str, Reused]) -> list[str]:
         "",
         "One trial has all movements one after another, the other none; it is solved with the",
         f"axes and rest positions of the first ({len(errors['there'].rest)} joints, "
-        f"{len(errors['there'].axes)} axes). Errors",
-        "of axes are beside the markers of the parent, those of rest positions beside the markers of",
-        "both limbs, from where they were. Who does not move has no joint centres to lay frames by.",
+        f"{len(errors['there'].axes)} axes). Axes",
+        "are beside the markers of the parent, rest positions beside those of both limbs, from",
+        "where they were. Who stands still has no joint centres to lay limb frames by.",
         "",
         "| joints of one recording | axes: median, deg | rms | worst | rest: median, deg | worst |",
         "|---|---|---|---|---|---|",

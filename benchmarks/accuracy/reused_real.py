@@ -24,8 +24,9 @@ def reused_knees(alone: Mapping[str, Solution]) -> list[str]:
     return [
         "## Knees in other trials",
         "",
-        "Each knee about the axis and rest position of its own trial, in every other trial: how far",
-        f"the shank is off, mm rms. Of {len(rows)}, {(turned < named).sum()} are nearer by the markers.",
+        "Each knee about the axis and rest position of its own trial, in every other trial: how",
+        f"far the shank is off, mm rms. {(turned < named).sum()} of {len(rows)} are nearer by the "
+        "markers.",
         "",
         "| knee | in | by the frames' names | by the markers | about its own axis there |",
         "|---|---|---|---|---|",
