@@ -23,6 +23,7 @@ def trials(recordings):
 def test_each_knee_is_from_its_own_trial(trials):
     skeleton = trials["lankle"].skeleton
     bearing, said = with_best_axes(skeleton, calibrated(trials))
+    moved = []
     for side in ("left", "right"):
         knee = bearing.joint(f"{side}_knee")
         own = trials[f"{side[0]}knee"].skeleton.joint(knee.name)
@@ -34,7 +35,8 @@ def test_each_knee_is_from_its_own_trial(trials):
         )
         assert_allclose(knee.axes, own.axes @ thigh.T, atol=1e-12)
         assert_allclose(knee.rest, thigh @ own.rest @ shank.T, atol=1e-12)
-        assert np.linalg.norm(knee.axes - own.axes) > 0.02  # frames of one name do differ
+        moved.append(np.linalg.norm(knee.axes - own.axes))
+    assert max(moved) > np.sin(np.deg2rad(3.0))  # frames of one name do differ
     # a squat's short arc and skin put the right knee's axis elsewhere; the left one's agrees
     assert [clause for clause in said if "knee (" in clause] == [
         clause for clause in said if clause.startswith("right_knee (")
