@@ -30,7 +30,7 @@ def hidden(recording):
 
 def found(recording, **orientation):
     settings = Settings()
-    _, model = discovered(
+    _, model, _ = discovered(
         recording,
         None,
         settings.discovery,

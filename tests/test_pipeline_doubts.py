@@ -54,12 +54,23 @@ def bare(recording, share):
 
 
 def test_zeros_are_named_before_motion_alone_fails_on_them(performance):
-    zeros = bare(performance.recording, 0.3)
-    with pytest.raises(DegenerateMotion, match=r"^41 markers are exactly at the origin in .*: "
-                       r"export missing markers as missing .*; as it is, ") as told:  # fmt: skip
+    zeros = bare(performance.recording, 0.99)
+    with pytest.raises(BadRecording, match=r"^41 markers are exactly at the origin in .*: "
+                       r"export missing markers as missing .*; as it is, 0 of 41 markers are "
+                       r"seen for long enough"):  # fmt: skip
         solve(zeros, "none")
-    assert "hardly move" not in str(told.value)
-    assert "no markers keep their distances" in str(told.value)
+
+
+def test_zeros_are_gaps_where_motion_alone_is_to_tell_the_bodies(performance):
+    zeros = bare(performance.recording, 0.05)
+    gaps = replace(zeros, markers=np.where(zeros.markers == 0, np.nan, zeros.markers))
+    found, expected = solve(zeros, "none"), solve(gaps, "none")
+    assert found.motion.skeleton.limb_names == expected.motion.skeleton.limb_names
+    np.testing.assert_array_equal(found.motion.origins, expected.motion.origins)
+    (told,) = (w for w in found.warnings if "at the origin" in w)
+    assert told.startswith("41 markers are exactly at the origin in ")
+    assert told.endswith("likely missing, written as zero: taken for missing")
+    assert not any("at the origin" in warning for warning in expected.warnings)
 
 
 def test_motion_alone_fails_without_a_word_of_zeros_where_there_are_none(performance):

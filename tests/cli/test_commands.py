@@ -127,7 +127,7 @@ def test_info_of_labels_nobody_knows(call, recording, tmp_path):
     write(replace(recording, labels=tuple(f"P{i}" for i in range(42))), file)
     shown = json.loads(ok(call("info", file, "--json")))
     assert shown["model"] is None
-    assert "solve needs --model" in ok(call("info", file))
+    assert "solve goes by motion alone, unless --model names one" in ok(call("info", file))
 
 
 def test_info_of_a_model(call, tmp_path):

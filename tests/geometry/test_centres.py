@@ -152,3 +152,16 @@ def test_spheres_have_one_centre_and_a_silent_set_none(rng):
     assert_allclose(sphere_centre(points, CENTRE + 0.1, ridge=0.0), CENTRE, atol=1e-9)
     still = np.full((5, 1, 3), np.nan)
     assert_allclose(sphere_centre(still, CENTRE), CENTRE, atol=0)
+
+
+def test_four_looks_at_a_sphere_tell_nothing(rng):
+    """A centre and a distance fit any four points."""
+    directions = rng.normal(size=(40, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    told = []
+    for n in (4, 40):
+        seen = (CENTRE + 0.3 * directions[:n])[:, None]
+        view = View(seen, np.array([NOISE]), pose_covariance(PARENT, np.full(len(PARENT), 1e-9)))
+        told.append(fit_centre(view, CENTRE, SPREAD).covariance)
+    assert_allclose(told[0], SPREAD**2 * np.eye(3), rtol=1e-6)
+    assert np.linalg.eigvalsh(told[1])[2] < 0.1 * SPREAD**2

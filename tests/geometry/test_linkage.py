@@ -7,6 +7,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from kinesphere.geometry.linkage import Linkage, by_pose_of, equations, idle, misfit
 from kinesphere.geometry.linkage_fit import fit_linkage, pose_linkage
+from kinesphere.geometry.linkage_shake import averaging_share, cleared_of_shake
 from kinesphere.geometry.rotations import rotation_angle, rotation_exp
 
 FRAMES = 150
@@ -125,3 +126,31 @@ def test_markers_follow_poses_as_differences_say(rng, hung):
         turned[:, 1] = rotation_exp(np.tile(step * np.eye(3)[k], (FRAMES, 1))) @ turned[:, 1]
         slope = (markers(hung._replace(rotations=turned)) - points) / step
         assert_allclose(slope, by_pose[..., 3 + k], atol=1e-6)
+
+
+def on_a_hinge(rng, linkage, axis):
+    """Return the linkage with the last body turning about one axis of the middle one."""
+    rotations = linkage.rotations.copy()
+    rotations[:, 2] = rotations[:, 1] @ rotation_exp(smooth(rng, 0.5)[:, :1] * axis)
+    return linkage._replace(rotations=rotations)
+
+
+@pytest.mark.parametrize("hinge", [False, True])
+def test_what_noise_feigns_along_a_hinge_is_not_told(rng, hung, hinge):
+    axis = np.array([0.6, 0.0, 0.8])
+    linkage = on_a_hinge(rng, hung, axis) if hinge else hung
+    points = markers(linkage) + 0.002 * rng.normal(size=(FRAMES, sum(COUNTS), 3))
+    fit = fit_linkage(linkage, points, linkage.centres, np.array([0.0, 1.0, 1.0]), float(FRAMES))
+    seen = np.ones(points.shape[:2], dtype=bool)
+    told = cleared_of_shake(fit, seen, np.ones(3), linkage.centres, np.full(3, 0.05))
+    # the middle body has turned in its own frame: along the hinge is where least is told
+    kept = np.linalg.eigvalsh(told[2].pull)[0] / np.linalg.eigvalsh(fit.information[2])[0]
+    assert kept < 0.3 if hinge else kept > 0.8
+
+
+def test_what_averages_out_is_as_much_where_markers_hide(rng, hung):
+    points = markers(hung) + 0.002 * rng.normal(size=(FRAMES, sum(COUNTS), 3))
+    whole = averaging_share(hung, points)
+    points[rng.random(points.shape[:2]) < 0.5] = np.nan
+    assert averaging_share(hung, points) == pytest.approx(whole, abs=0.15)
+    assert whole > 0.8

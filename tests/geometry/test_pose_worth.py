@@ -4,7 +4,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from kinesphere.geometry.joint_turns import crowds
-from kinesphere.geometry.pose_worth import crowding, noise_share
+from kinesphere.geometry.pose_worth import COHERENT, crowding, noise_share, overrated
 from kinesphere.geometry.rotations import rotation_exp
 
 
@@ -43,3 +43,12 @@ def test_noise_is_all_that_differs_between_poses_most_alike(rng):
     assert noise_share(pairs, near) == 0.0
     assert_allclose(noise_share(noise, near), 1.0, atol=0.1)
     assert_allclose(noise_share(pairs + noise, near), 0.5, atol=0.05)
+
+
+def test_noise_averages_out_over_what_is_seen_and_what_lasts_does_not():
+    """A centre's variance is `overrated` over the looks."""
+    poses, hidden = 50, 3.0
+    assert_allclose(overrated(1.0, 600, poses, hidden) * hidden**2 / poses, 1 / 600)
+    assert_allclose(overrated(1.0, 300, poses, hidden), 2 * overrated(1.0, 600, poses, hidden))
+    variances = [overrated(0.0, 10**7, n, hidden) / n for n in (50, 500, 50_000)]
+    assert_allclose(variances, [COHERENT + 1 / n for n in (50, 500, 50_000)])

@@ -11,6 +11,7 @@ from kinesphere.geometry.rigid import (
     fit_rigid,
     fit_shape,
     into_frame,
+    left_by_fit,
     line_spread,
     out_of_frame,
 )
@@ -87,3 +88,14 @@ def test_pose_covariance_is_what_noise_does_to_carried_points(rng):
     predicted = point_covariance(pose_covariance(shape, noise), far)
     # a covariance of 4000 samples is known to about 3 %; ten sigma leave room for linearising
     assert_allclose(np.cov(carried.T), predicted, atol=0.15 * np.trace(predicted))
+
+
+def test_noise_is_known_from_what_fits_leave_however_many_points_hide(rng):
+    shape = rng.normal(scale=0.08, size=(POINTS, 3))
+    points = moving(rng, shape, 2000)[0] + NOISE * rng.normal(size=(2000, POINTS, 3))
+    for hidden in (0.0, 0.45):
+        some = np.where(rng.random(points.shape[:2])[..., None] < hidden, np.nan, points)
+        fit = fit_rigid(shape, some)
+        left = (into_frame(fit.rotations, fit.shifts, some) - shape)[fit.fitted]
+        found = np.sqrt(np.nanmean(left**2)) * left_by_fit(np.isfinite(left[..., 0]))
+        assert_allclose(found, NOISE, rtol=0.05)

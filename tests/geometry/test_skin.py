@@ -214,11 +214,25 @@ def test_skin_noise_is_what_follows_the_joint_and_no_more(rng):
     local = np.tile(shape, (FRAMES, 1, 1))
     local[:, 0] += 0.004 * modes
     local += rng.normal(size=local.shape) * 1e-3
-    local[rng.random(local.shape[:2]) < 0.2] = np.nan
     noise = skin_noise(local, shape, modes)
     grown = np.sqrt(15 / 9)
     assert noise[0] == pytest.approx(0.004 * grown, rel=0.1)
     assert (noise[1:] < 3e-4 * grown).all()
+
+
+def test_skin_is_as_large_however_many_markers_hide(rng):
+    """A fit to fewer markers leaves less of it, and others of it in every frame."""
+    modes, shape = joint_modes(ball_turns(rng)), PARENT * 1e-3
+    points = shape + np.einsum("mij,fj->fmi", 2e-3 * rng.normal(size=(len(shape), 3, 3)), modes)
+    hiding = np.where(rng.random(points.shape[:2])[..., None] < 0.45, np.nan, points)
+    told = []
+    for some in (points, hiding):
+        fit = fit_rigid(shape, some)
+        local = into_frame(fit.rotations, fit.shifts, some)
+        known = fit.fitted
+        noise = skin_noise(local[known], shape, modes[known])
+        told.append(float(np.sqrt(np.mean(noise**2))))
+    assert told[1] == pytest.approx(told[0], rel=0.15)
 
 
 def test_what_goes_with_the_joint_by_chance_is_hardly_skin(rng):

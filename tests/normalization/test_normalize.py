@@ -14,7 +14,7 @@ from kinesphere.errors import AmbiguousFacing, BadSetting, DegenerateMotion
 from kinesphere.geometry.rotations import rotation_angle
 from kinesphere.normalization import NormalizationSettings, normalize
 from kinesphere.normalization.averaging import robust_mean_rotations
-from kinesphere.normalization.default_frames import find_default_frames
+from kinesphere.normalization.default_frames import _least, find_default_frames
 from kinesphere.normalization.proposal import propose_bodies
 from kinesphere.normalization.samples import take_samples
 
@@ -562,3 +562,12 @@ def test_the_nearest_posture_counts_where_the_default_one_is_hidden(tools, rng):
     motion = tools.hidden(replace(it.motion, rotations=rotations), "left_forearm", slice(0, 60))
     result = normalize(motion)
     assert apart(result.rotations[60:68, i], it.truth[60:68, i]) < EXACT
+
+
+def test_rounding_does_not_choose_among_samples_that_cost_the_same():
+    """Nor does the order of markers, which rounds sums otherwise: the slowest is taken."""
+    cost = np.array([np.inf, 4.0, 3.5, 3.5, 3.5, 4.0])
+    speeds = np.array([0.0, 0.1, 0.3, 0.2, 0.4, 0.1])
+    for rounded in (cost, cost + 1e-15 * np.array([0, 0, 0, 1, -1, 0])):
+        assert _least(rounded, speeds) == 3
+    assert _least(cost + np.array([0, 0, -1e-3, 0, 0, 0]), speeds) == 2

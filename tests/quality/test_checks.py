@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from kinesphere.data import Recording
-from kinesphere.quality import check_recording, find_gaps, swaps
+from kinesphere.quality import check_recording, find_gaps, swaps, with_zeros_as_gaps
 
 FIRST = 101  # number of the first stored frame, so that indices and frame numbers differ
 
@@ -100,6 +100,32 @@ def test_a_jump_beside_zeros_is_still_a_jump(clean):
     assert found[1].frame == FIRST + 30
 
 
+@pytest.mark.parametrize(("at", "gone"), [(0.09, False), (0.11, True)])
+def test_a_zero_is_a_gap_unless_the_marker_is_beside_the_origin(clean, at, gone):
+    column, markers = clean.labels.index("RELB"), clean.markers.copy()
+    markers[10:20, column], markers[9, column] = 0.0, [0.0, at, 0.0]
+    markers[:3, 0] = 0.0  # and one that is far from it, at the very beginning
+    recording = replace(clean, markers=markers)
+    found, told = with_zeros_as_gaps(recording)
+    assert np.isnan(found.markers[10:20, column]).all() == gone
+    assert (found.markers[10:20, column] == 0).all() == (not gone)
+    assert np.isnan(found.markers[:3, 0]).all()
+    same = found.seen
+    np.testing.assert_array_equal(found.markers[same], recording.markers[same])
+    frames = {f.markers[0]: dict(f.numbers)["frames"] for f in told}
+    assert frames == {clean.labels[0]: 3} | ({"RELB": 10} if gone else {})
+
+
+def test_a_marker_that_is_nowhere_else_is_never_seen(clean):
+    found, told = with_zeros_as_gaps(spoiled(clean, "RELB", slice(None), 0.0))
+    assert not found.seen[:, clean.labels.index("RELB")].any()
+    assert [f.markers for f in told] == [("RELB",)]
+
+
+def test_without_zeros_nothing_changes(clean):
+    assert with_zeros_as_gaps(clean) == (clean, ())
+
+
 def test_a_marker_that_never_moves(clean):
     found = only(check_recording(spoiled(replace(clean, rate=40.0), "STRN", slice(None), 1.0)))
     assert (found.rule, found.markers) == ("constant", ("STRN",))
@@ -114,6 +140,32 @@ def test_two_labels_on_one_marker(clean):
     found = only(check_recording(spoiled(clean, "LHEE", slice(None), other + 1e-4)))
     assert (found.rule, set(found.markers)) == ("coincident", {"LANK", "LHEE"})
     assert found.frame == FIRST
+
+
+def doubled(clean, *, seen, labels):
+    """Return the recording with a copy of one marker that is seen in these frames."""
+    at = clean.labels.index("LANK")
+    copy = np.full_like(clean.markers[:, :1], np.nan)
+    copy[seen, 0] = clean.markers[seen, at]
+    named = tuple(labels.get(label, label) for label in (*clean.labels, "copy"))
+    markers = np.concatenate([clean.markers, copy], axis=1)
+    return replace(clean, markers=markers, labels=named, rate=10.0)
+
+
+@pytest.mark.parametrize("labels", [{}, {"copy": "*7"}, {"copy": "*7", "LANK": "*3"}])
+def test_a_copy_is_one_whether_labelled_or_not(clean, labels):
+    found = only(check_recording(doubled(clean, seen=slice(None), labels=labels)))
+    pair = {labels.get("LANK", "LANK"), labels.get("copy", "copy")}
+    assert (found.rule, set(found.markers)) == ("coincident", pair)
+
+
+def test_pieces_without_labels_that_meet_are_no_copies(clean):
+    """Half of what shows one shows both: each shows what the other does not."""
+    recording = doubled(clean, seen=slice(None), labels={"copy": "*7"})
+    markers, n = recording.markers.copy(), len(recording.markers)
+    markers[: n // 3, -1] = markers[2 * n // 3 :, recording.labels.index("LANK")] = np.nan
+    rules = {f.rule for f in check_recording(replace(recording, markers=markers))}
+    assert "coincident" not in rules
 
 
 def test_passing_by_is_not_coincident(clean):

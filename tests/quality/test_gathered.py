@@ -80,3 +80,24 @@ def test_zeros_of_many_markers_are_one_line_with_the_worst():
     )
     assert (zeros.markers, zeros.frame) == ((recording.labels[3], recording.labels[11]), 11)
     assert gap.markers == (recording.labels[20],)
+
+
+def test_many_copies_are_one_line_that_names_some_pairs():
+    copies = [
+        Finding(
+            "coincident",
+            "warning",
+            f"*{k} and c{k} are at the same place",
+            "leave one out",
+            markers=(f"*{k}", f"c{k}"),
+            frame=5 + k,
+        )
+        for k in range(7)
+    ]
+    (told,) = gathered(copies)
+    assert told.what == (
+        "7 pairs of markers are at the same place: "
+        "*0 and c0, *1 and c1, *2 and c2, *3 and c3, *4 and c4, …"
+    )
+    assert (len(told.markers), told.frame) == (14, 5)
+    assert gathered(copies[:1]) == tuple(copies[:1])

@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.ndimage import gaussian_filter1d
 
 from kinesphere.data import JointModel, Landmark, Recording, Segment, TopologicalModel
+from kinesphere.geometry.rigid import into_frame
 from kinesphere.geometry.rotations import rotation_exp
 from kinesphere.skeleton import fit_skeleton
 from kinesphere.skeleton.settings import SkeletonSettings
@@ -22,7 +23,7 @@ def smooth(rng, scale):
     return scale * walk / walk.std(axis=0)
 
 
-def arm(rng, beside, noise=0.001):
+def arm(rng, beside, noise=0.001, hinge=False):
     """Markers (FRAMES, 10, 3) of an arm, and both joints in the world, (2, FRAMES, 3), in m."""
     upper = rng.normal(scale=0.05, size=(4, 3))
     middle = np.array([[beside, -0.05, 0.0], [-beside, -0.22, 0.0]])
@@ -31,7 +32,7 @@ def arm(rng, beside, noise=0.001):
     )
     first = rotation_exp(smooth(rng, 0.3))
     second = first @ rotation_exp(smooth(rng, 0.5))
-    third = second @ rotation_exp(smooth(rng, 0.6))
+    third = second @ rotation_exp(smooth(rng, 0.6) * ([0.0, 0.0, 1.0] if hinge else 1.0))
     elbow = smooth(rng, 0.1) + first @ JOINTS[0]
     wrist = elbow + second @ JOINTS[1]
     parts = [
@@ -71,6 +72,25 @@ def wrist_off(motion, truth):
 def test_the_joint_beyond_is_found(rng, beside):
     markers, truth = arm(rng, beside)
     assert wrist_off(solved(markers), truth) < 0.0035  # a hand's pose alone is off by that
+
+
+def wrist_told(motion, truth):
+    """How far the wrist is from the truth in the middle limb, and how far it is told to be, m."""
+    joint = motion.skeleton.joint("joint_2")
+    turns, origins = motion.rotations[:, 1], motion.origins[:, 1]
+    true = np.nanmean(into_frame(turns, origins, truth[1][:, None])[:, 0], axis=0)
+    off = np.linalg.norm(joint.centre_in_parent - true)
+    return float(off), float(np.sqrt(np.trace(joint.covariance)))
+
+
+def test_along_a_hinge_beyond_little_is_told(rng):
+    """Noise in the poses feigns a turn about the other axes, and with it a centre."""
+    for draw in rng.spawn(3):
+        markers, truth = arm(draw, 0.02, hinge=True)
+        off, told = wrist_told(solved(markers), truth)
+        assert off < 2 * told
+        markers, truth = arm(draw, 0.02)
+        assert told > 5 * wrist_told(solved(markers), truth)[1]
 
 
 def test_limb_by_limb_a_line_leads_astray(rng):

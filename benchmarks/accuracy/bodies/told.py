@@ -1,17 +1,19 @@
 """What is told of joint centres: errors beside the uncertainty that is given with them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.accuracy.bodies.linked_chains import Kind, chain, model
 from kinesphere.geometry.rigid import into_frame
 from kinesphere.skeleton import fit_skeleton
 from kinesphere.synthetic import (
     Performance,
     make_performance,
+    spoil_with_gaps,
     spoil_with_noise,
     spoil_with_soft_tissue,
 )
@@ -27,6 +29,17 @@ EXACT_MM = 1e-3
 """Uncertainty below which there is nothing but rounding."""
 SKIN_NOISE = 3e-4
 """m, noise of markers on skin."""
+
+SKIN = SKIN_NOISE, 0.010
+"""Noise and skin, m and m a radian."""
+FREE: dict[str, Any] = {"calibration_s": 0, "free_s": 20}
+LAWS: dict[str, dict[str, float]] = {
+    "skin three times as large": {"per_radian": 0.030},
+    "skin all along the limb": {"reach": 1.0},
+    "skin of whole limbs": {"shared": 0.9},
+    "slow drift 8 mm": {"per_radian": 0.0, "wobble": 0.008, "time_constant": 4.0},
+}
+"""What skin does elsewhere than on the rest of the page."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +59,12 @@ class Condition:
     """Only the first seconds of it: most joints hardly move in them."""
     sparse: bool = False
     """41 markers, two on thighs and upper arms."""
+    law: Mapping[str, float] = field(default_factory=dict)
+    """Of the skin, where it is another: arguments of `spoil_with_soft_tissue`."""
+    missing: float = 0.0
+    """Share of all samples, each by itself."""
+    gaps: float = 0.0
+    """Share that is hidden for half a second at a time."""
 
 
 CONDITIONS = (
@@ -73,7 +92,23 @@ CONDITIONS = (
         free_s=12,
         sparse=True,
     ),
+    *(Condition(f"{name}, 20 s free", *SKIN, **FREE, law=law) for name, law in LAWS.items()),
+    Condition("half the samples missing, 1 mm noise, 20 s free", **FREE, missing=0.5),
+    Condition("half missing, skin 10 mm/rad, 20 s free", *SKIN, **FREE, missing=0.5),
+    Condition("40% in gaps, skin 10 mm/rad, 20 s free", *SKIN, **FREE, gaps=0.4),
+    Condition("41 markers, half missing, skin, 20 s free", *SKIN, **FREE, missing=0.5, sparse=True),
 )
+
+CHAINS = (
+    Kind("1 mm noise", last=3),
+    Kind("1 mm noise, a hinge beyond", last=3, hinge=True),
+    Kind("3 mm of skin", skin=0.003),
+    Kind("3 mm of skin, a hinge beyond", skin=0.003, hinge=True),
+    Kind("8 mm of skin", skin=0.008),
+)
+"""Limbs in a row, fitted together: the middle one has no pose of its own."""
+IN_A_ROW = "limbs in a row"
+NO_AXIS = float("nan"), float("nan")
 
 
 @dataclass(frozen=True)
@@ -94,8 +129,33 @@ class Told:
 
 
 def told_rows() -> list[Told]:
-    """Return a row a joint of every actor in every condition."""
-    return [row for one in CONDITIONS for seed in SEEDS for row in rows_of(one, seed)]
+    """Return a row a joint of every actor in every condition, and of chains of limbs."""
+    people = [row for one in CONDITIONS for seed in SEEDS for row in rows_of(one, seed)]
+    return people + [row for one in CHAINS for seed in SEEDS for row in chain_rows(one, seed)]
+
+
+def chain_rows(kind: Kind, seed: int) -> list[Told]:
+    """Return a row a joint of limbs in a row, the middle one of two markers."""
+    recording, centres = chain(kind, seed)
+    skeleton = (motion := fit_skeleton(recording, model(kind.last))).skeleton
+    rows = []
+    for joint, world in zip(skeleton.joints, centres, strict=True):
+        parent = skeleton.limb_names.index(joint.parent)
+        local = into_frame(motion.rotations[:, parent], motion.origins[:, parent], world[:, None])
+        off = joint.centre_in_parent - np.nanmean(local[:, 0], axis=0)
+        error, told = np.linalg.norm(off), np.sqrt(np.trace(joint.covariance))
+        name = f"{IN_A_ROW} of 4, 2 and {kind.last} markers, {kind.name}"
+        row = Told(
+            name,
+            seed,
+            joint.name,
+            1e3 * float(error),
+            1e3 * float(told),
+            *NO_AXIS,
+            joint.observability,
+        )
+        rows.append(row)
+    return rows
 
 
 def rows_of(condition: Condition, seed: int) -> list[Told]:
@@ -110,11 +170,16 @@ def rows_of(condition: Condition, seed: int) -> list[Told]:
     recording = performance.recording
     wobble = condition.skin / 5 if condition.wobble is None else condition.wobble
     if condition.skin or wobble:
-        recording = spoil_with_soft_tissue(
-            recording, rng, performance, per_radian=condition.skin, wobble=wobble
-        )
+        law = {"per_radian": condition.skin, "wobble": wobble, **condition.law}
+        recording = spoil_with_soft_tissue(recording, rng, performance, **law)
     if condition.noise:
         recording = spoil_with_noise(recording, rng, deviation=condition.noise)
+    if condition.missing:
+        missing = rng.random(recording.markers.shape[:2]) < condition.missing
+        seen = np.where(missing[..., None], np.nan, recording.markers)
+        recording = replace(recording, markers=seen, residuals=None)
+    if condition.gaps:
+        recording = spoil_with_gaps(recording, rng, share=condition.gaps, gap_s=0.5)
     shown = slice(None)
     if condition.first_s is not None:
         shown = slice(round(condition.first_s * recording.rate))

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.accuracy.bodies.told import EXACT_MM, KINDS, of_conditions, told_ratio
+from benchmarks.accuracy.bodies.told import EXACT_MM, IN_A_ROW, KINDS, of_conditions, told_ratio
 
 RIGHT = 0.4, 1.2
 """Rms of errors over what is told of them, in every condition."""
@@ -17,12 +17,14 @@ SOME = ("1 mm noise", "skin 10 mm/rad", "skin 10 mm/rad, 12 s free")
 
 def told_bars(rows: Sequence[dict[str, Any]]) -> list[tuple[str, str, str, bool]]:
     """Return what the section is held to: what, found, wanted, and whether it is met."""
-    ratios = [told_ratio(mine) for mine in of_conditions(rows).values()]
-    least, most = float(np.nanmin(ratios)), float(np.nanmax(ratios))
+    ratios = {name: told_ratio(mine) for name, mine in of_conditions(rows).items()}
+    people = [ratio for name, ratio in ratios.items() if not name.startswith(IN_A_ROW)]
+    # limbs in a row are told carefully: what is linked has no model of its skin
+    least, most = float(np.nanmin(people)), float(np.nanmax(list(ratios.values())))
     far = max(r["error_mm"] / r["told_mm"] for r in rows if r["told_mm"] > EXACT_MM)
     return [
         (
-            "centres: error over what is told, rms, least and most of the conditions",
+            "centres: error over what is told, rms, least of people and most of all conditions",
             f"{least:.2f}, {most:.2f}",
             f"{RIGHT[0]:g} to {RIGHT[1]:g}",
             RIGHT[0] <= least and most <= RIGHT[1],
@@ -48,7 +50,9 @@ def told_section(rows: Sequence[dict[str, Any]]) -> str:
         "in `skeleton.json`. *Over told*: error over told, 1 where what is told is right; the "
         "share of centres within once and twice what is told, rms and largest. *Along*: the same "
         "ratio along the axes of hinges, rms. *Determined*: how many are called so, and the "
-        "largest error of those.\n",
+        "largest error of those. *Missing*: samples drawn one by one, *in gaps* half a second at a "
+        "time. *Limbs in a row*: chains, not people, the middle limb fitted together with both "
+        "beside it; errors along hinges count.\n",
         "| condition | centres | error, median | told, median | over told, rms | largest "
         "| within 1 | within 2 | along, rms | determined | their largest error |",
         "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|",

@@ -130,7 +130,9 @@ def _models(summary: dict[str, Any]) -> str:
     shares = ", ".join(f"{name} {share:.0%}" for name, share in summary["models"].items())
     chosen = summary["model"]
     return f"{shares} of its labels; " + (
-        f"solve takes {chosen}" if chosen else "solve needs --model (see 'kinesphere model')"
+        f"solve takes {chosen}"
+        if chosen
+        else "solve goes by motion alone, unless --model names one (see 'kinesphere model')"
     )
 
 

@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinesphere.geometry.pose_worth import COHERENT
+
 Array = NDArray[np.float64]
 
 SILENT = 1e-6
@@ -63,9 +65,9 @@ def scatter_of(scores: Array, share: float, crowd: Array) -> Array:
     share
         Of the residuals' variance, what averages out, 0 to 1.
     crowd : (n,)
-        How many poses are like each.
+        How many poses are like each. A share of all, `COHERENT`, errs alike whatever their poses.
     """
-    times = share + (1 - share) * crowd
+    times = share + (1 - share) * np.maximum(crowd, COHERENT * len(crowd))
     variance: Array = (scores * times[:, None]).T @ scores
     return variance
 

@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 
 CELL = np.deg2rad(10.0)
 """rad, poses nearer to each other than this count as one: soft tissue errs alike in both."""
+UNKNOWNS = 4
+"""A centre's coordinates and a distance to it: so many looks tell nothing."""
 FAR = 10.0
 """Spreads from the expectation beyond which an algebraic centre is no place to start from."""
 
@@ -123,19 +125,35 @@ def fit_centre(
 
 
 def with_expectation(
-    centre: Array, information: Array, spread: float, noise: float, n_poses: int, over: float = 1.0
+    centre: Array,
+    told: Told | Array,
+    spread: float,
+    noise: float,
+    n_poses: int,
+    off: Array | None = None,
 ) -> CentreFit:
-    """Return a centre found in another way, from what the motion told about it, (3, 3) 1/m².
+    """Return a centre found in another way, from what the motion told about it.
 
-    ``over`` is how many times its variance is what this information says.
+    Parameters
+    ----------
+    told
+        Or its information alone, (3, 3) 1/m², where that says what its variance is.
+    off : (3,) m
+        From where the centre was expected to where it is: where nothing is told it is astray by
+        that, too.
     """
-    prior, told = np.eye(3) / spread**2, Told(information, over * information)
+    told = told if isinstance(told, Told) else Told(told, told)
+    prior = np.eye(3) / spread**2
+    covariance = covariance_of(told, prior, 1.0, spread)
+    if off is not None:
+        untold_of = np.linalg.solve(prior + told.pull, prior @ off)
+        covariance = covariance + np.outer(untold_of, untold_of)
     return CentreFit(
         centre=centre,
         noise=noise,
         data_covariance=data_covariance_of(told, spread),
         prior=prior,
-        covariance=covariance_of(told, prior, 1.0, spread),
+        covariance=covariance,
         n_poses=n_poses,
     )
 
@@ -161,12 +179,15 @@ def _fit(
     if _has_skin(view):
         fit = fit_through_skin(view, x, expected, prior, n_poses, hidden=hidden, rounds=rounds)
         return fit.centre, fit.told
-    # distances and orientation are two readings of the same sightings
+    # any four looks fit; distances and orientation are two readings of the same sightings
+    n_poses = max(n_poses - UNKNOWNS, 0)
     looks = n_poses / hidden**2 / (1 if turning is None else 2)
     x = descend(view, x, expected, prior, looks, rounds)
     information = find_information(view, x, looks)
     share = averaging_share(view, x)
-    over = overrated(share, len(view.points), n_poses, hidden)
+    seen = view.sightings.seen  # what is hidden is no look
+    n_seen = round(float(seen.sum(axis=0).mean())) if seen.any() else len(seen)
+    over = overrated(share, n_seen, n_poses, hidden)
     # and no number of poses tells a centre better than what lasts lets it be the same
     lasts = (1 - share) * _robust_noise(view, x) ** 2
     return x, Told(information, over * information + lasts * information @ information)

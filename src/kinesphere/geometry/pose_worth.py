@@ -13,6 +13,10 @@ NARROW = np.deg2rad(10.0)
 """rad, rms rotation about its widest axis at which a joint turns little: see `crowding`."""
 
 
+COHERENT = 0.02
+"""Share of all poses, whatever they are like, in which what lasts errs alike at least."""
+
+
 def noise_share(strays: Array, near: NDArray[np.int64]) -> float:
     """Return the share of the residuals' variance that averages out, 0…1.
 
@@ -56,14 +60,16 @@ def pose_worth(share: float, crowd: Array, looks: float, hidden: float) -> Array
 def overrated(share: float, n_frames: int, n_poses: int, hidden: float) -> float:
     """Return how many times a centre's variance is what looks say that take all strays to last.
 
-    Such looks are as many as poses, each worth 1/``hidden``² of what its residual says.
+    Such looks are as many as poses, each worth 1/``hidden``² of what its residual says. What lasts
+    errs alike in a share of all poses: that much no number of them averages out.
 
     Parameters
     ----------
     share
         As `noise_share` returns it.
     """
-    return share * n_poses / hidden**2 / max(n_frames, n_poses) + 1 - share
+    averages = share * n_poses / hidden**2 / max(n_frames, n_poses)
+    return averages + (1 - share) * (1 + COHERENT * n_poses)
 
 
 def crowding(rotations: Array, crowd: Array) -> Array:

@@ -103,6 +103,21 @@ def tells_pose(
     return np.full(len(seen), enough[0]) if whole and len(seen) else enough[which.ravel()]
 
 
+def left_by_fit(seen: NDArray[np.bool_]) -> float:
+    """Return how many times as large points' errors are as what rigid fits leave of them.
+
+    A fit takes up six of the coordinates that a frame shows: the fewer are seen, the less is left.
+
+    Parameters
+    ----------
+    seen : (n_frames, n_points)
+        Frames that show no pose do not count.
+    """
+    count = seen.sum(axis=1)
+    coordinates = 3 * float(count[count > 2].mean()) if (count > 2).any() else 3.0 * seen.shape[1]
+    return float(np.sqrt(coordinates / max(coordinates - 6, 1)))
+
+
 def fit_rigid_batched(
     shape: Array,
     points: Array,

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from kinesphere.geometry.rotations import hat
 from kinesphere.geometry.vectors import is_seen
 
 Array = NDArray[np.float64]
@@ -43,6 +44,27 @@ def skin_noise(local: Array, shape: Array, modes: Array) -> Array:
     # noise goes with a joint by chance, too: as much of it in every marker, give or take
     total, most = float((noise**2).sum()), 1 + 2 * np.sqrt(2 / (9 * n))
     noise *= np.sqrt(max(1 - most * chance.sum() / max(total, 1e-300), BY_CHANCE))
-    # the fit itself takes up six of the coordinates: what is left looks smaller than it is
-    noise *= np.sqrt(3 * n / max(3 * n - 6, 1))
+    noise *= _left_by_fits(shape, is_seen(local))
     return np.where(noise > LEAST, noise, NONE)
+
+
+def _left_by_fits(shape: Array, seen: NDArray[np.bool_]) -> float:
+    """Return how many times as large skin is as what rigid fits leave of it on average.
+
+    A fit takes up six of the coordinates that a frame shows, others in each set of markers that is
+    seen: what goes with the joint is the mean of what they leave.
+    """
+    n, moved = len(shape), np.concatenate([-hat(shape), np.tile(np.eye(3), (len(shape), 1, 1))], 2)
+    if seen.all():
+        return float(np.sqrt(3 * n / max(3 * n - 6, 1)))
+    sets, times = np.unique(seen, axis=0, return_counts=True)
+    left, total = np.zeros((3 * n, 3 * n)), np.zeros(n)
+    for shown, count in zip(sets, times, strict=True):
+        own = np.repeat(shown, 3)
+        basis = np.where(own[:, None], np.nan_to_num(moved).reshape(3 * n, 6), 0.0)
+        left += count * (np.diag(own.astype(float)) - basis @ np.linalg.pinv(basis, rcond=1e-6))
+        total += count * shown
+    rows = np.repeat(np.maximum(total, 1), 3)
+    squares = float(((left / rows[:, None]) ** 2).sum())
+    often = 3 * int((total >= FEW).sum())
+    return float(np.sqrt(often / max(squares, 1.0)))

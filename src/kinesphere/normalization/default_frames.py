@@ -22,6 +22,7 @@ from kinesphere.normalization.settings import NormalizationSettings
 
 _SHARE, _MOST_SHARED = 0.1, 1.0  # of the best cost: where nothing is good, differences count less
 _STRIDE = 0.5  # of the best cost: enough to reach over a whole stride
+_ROUNDING = 1e-9  # of the cost: less is no difference
 _ALIKE, _LEAST = 0.5, 1.0  # share of a stride's frames that serve in the end, if they last so long
 
 
@@ -66,7 +67,7 @@ def find_default_frames(
         raise DegenerateMotion(
             f"no frame shows enough to place the body's axes: {proposal.needs} in one frame"
         )
-    best = int(np.argmin(cost))
+    best = _least(cost, samples.speeds)
     chosen = np.arange(len(cost)) == best
     if settings.frames == "many" and not proposal.only_best:
         chosen = cost <= cost[best] + _margin(samples, position, best, cost[best], settings)
@@ -89,6 +90,17 @@ def find_default_frames(
         doubts=doubts(terms, settings, samples.anatomy.span),
         warnings=warnings + proposal.warnings,
     )
+
+
+def _least(cost: Array, speeds: Array) -> int:
+    """Return the sample of least cost; where rounding alone parts several, the slowest of them.
+
+    Terms have a ceiling and are averaged over a window, so that a stretch may cost the same
+    throughout: sums in another order, of other markers first, must not choose in it.
+    """
+    least = float(np.min(cost))
+    alike = cost <= least + _ROUNDING * max(abs(least), 1.0)
+    return int(np.argmin(np.where(alike, speeds, np.inf)))
 
 
 def _margin(

@@ -73,10 +73,11 @@ def solve(
     check_reuse(settings.parameterization, calibration_from)
     clock = Clock(progress, len(STAGES))
     body = body_for(settings.surface)  # first, so that a file that cannot be used costs no wait
+    unit = None
     given = model_for(recording, model, subject)
     with clock.stage("discovery" if given is None else "labelling"):
         if given is None:
-            labelled, chosen = discovered(
+            labelled, chosen, unit = discovered(
                 recording,
                 subject,
                 settings.discovery,
@@ -92,7 +93,7 @@ def solve(
     with clock.stage("skeleton"):
         # markers that were found loose are not to be taken in again
         measured = settings.skeleton if given else replace(settings.skeleton, adopt_markers=False)
-        motion = fit_skeleton(oriented, chosen, measured)
+        motion = fit_skeleton(oriented, chosen, measured, unit=unit)
         if settings.skeleton.fill_markers:
             oriented = fill_markers(oriented, motion)
             motion = replace(motion, history=(*motion.history, oriented.history[-1]))

@@ -10,7 +10,7 @@ from kinesphere.normalization import Facing, NormalizationSettings, normalize
 from kinesphere.normalization.doubts import LYING
 from kinesphere.pipeline.choice import why_no_model
 from kinesphere.pipeline.doubts import why_it_fails
-from kinesphere.quality import OrientationSettings, right_handed
+from kinesphere.quality import OrientationSettings, gathered, right_handed, with_zeros_as_gaps
 from kinesphere.skeleton import DiscoverySettings, SkeletonSettings, discover
 
 FRONTS: tuple[Facing, ...] = ("+x", "+z", "+y")
@@ -26,8 +26,10 @@ def discovered(
     orientation: OrientationSettings,
     *,
     asked: bool,
-) -> tuple[Recording, TopologicalModel]:
-    """Return the recording and the model that its motion tells.
+) -> tuple[Recording, TopologicalModel, float | None]:
+    """Return the recording, the model that its motion tells, and how many times too large it is.
+
+    The last as `kinesphere.skeleton.fit_skeleton` takes it.
 
     Parameters
     ----------
@@ -46,14 +48,18 @@ def discovered(
     """
     if subject is not None:
         recording = _of_subject(recording, subject)
+    given, (recording, zeros) = recording, with_zeros_as_gaps(recording)
     try:
         found = discover(right_handed(recording, orientation), settings, skeleton)
     except (BadRecording, DegenerateMotion) as failed:
-        raise why_it_fails(recording, failed) from failed
+        raise why_it_fails(given, failed) from failed
     step = found.step
+    if zeros:
+        told = f"{gathered(zeros)[0].what}: taken for missing"
+        step = replace(step, warnings=(told, *step.warnings))
     if not asked:
         step = replace(step, warnings=(why_no_model(recording, subject), *step.warnings))
-    return replace(recording, history=(*recording.history, step)), found.model
+    return replace(recording, history=(*recording.history, step)), found.model, found.unit
 
 
 def normalized_somehow(

@@ -2,6 +2,7 @@
 
 from kinesphere.data.directions import world_from_up as world_from_up
 from kinesphere.quality.at_zero import check_at_zero as check_at_zero
+from kinesphere.quality.at_zero import with_zeros_as_gaps as with_zeros_as_gaps
 from kinesphere.quality.checks import check_recording as check_recording
 from kinesphere.quality.findings import Finding as Finding
 from kinesphere.quality.gaps import Gap as Gap

@@ -7,8 +7,11 @@ import numpy as np
 
 from kinesphere.data import Mask, Recording
 from kinesphere.quality.findings import Finding
+from kinesphere.quality.gaps import runs
 
 AT_ZERO = "at-zero"
+NEAR = 0.1
+"""m from the origin, where a marker is just before or after a zero that it may have been at."""
 
 
 def check_at_zero(recording: Recording) -> Iterator[Finding]:
@@ -40,6 +43,37 @@ def without_zeros(recording: Recording) -> Recording:
     if not zero.any():
         return recording
     return replace(recording, markers=np.where(zero[..., None], np.nan, recording.markers))
+
+
+def with_zeros_as_gaps(recording: Recording) -> tuple[Recording, tuple[Finding, ...]]:
+    """Return the recording with what cannot have been measured at the origin as not seen.
+
+    A span of zeros stays where the marker is within `NEAR` of the origin just before or after it:
+    there it may have passed. Elsewhere, and throughout a marker's life, it is a gap.
+
+    Returns
+    -------
+    Recording
+        The same where there is nothing of the kind.
+    tuple of Finding
+        What was at the origin and is missing now, by marker, as `check_at_zero` tells it.
+    """
+    gone = _at_zero(recording)
+    if not gone.any():
+        return recording, ()
+    markers = np.where(gone[..., None], np.nan, recording.markers)
+    away = np.linalg.norm(markers, axis=2)
+    for c, start, stop in zip(*runs(gone), strict=True):
+        before, after = away[max(0, start - 1) : start, c], away[stop : stop + 1, c]
+        if (np.concatenate([before, after]) < NEAR).any():
+            gone[start:stop, c] = False
+    if not gone.any():
+        return recording, ()
+    told = check_at_zero(
+        replace(recording, markers=np.where(gone[..., None], recording.markers, np.nan))
+    )
+    kept = np.where(gone[..., None], np.nan, recording.markers)
+    return replace(recording, markers=kept), tuple(told)
 
 
 def _at_zero(recording: Recording) -> Mask:

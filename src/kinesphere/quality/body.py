@@ -134,8 +134,11 @@ def judged_columns(recording: Recording) -> list[int]:
 
     Without labels motion alone tells the bodies, from every marker that is no reflection.
     """
-    if labelled := labelled_columns(recording):
-        return labelled
+    return labelled_columns(recording) or lasting_columns(recording)
+
+
+def lasting_columns(recording: Recording) -> list[int]:
+    """Return the columns of all points, labelled or not, that live too long for a reflection."""
     return np.flatnonzero(worth_grouping(recording.seen, recording.rate, GHOST)).tolist()
 
 

@@ -4,10 +4,14 @@ from collections.abc import Callable, Mapping, Sequence
 
 from kinesphere.quality.at_zero import AT_ZERO
 from kinesphere.quality.findings import Finding
+from kinesphere.quality.marker_checks import COINCIDENT
+
+LISTED = 5
+"""Pairs of markers that are named in one line."""
 
 
 def gathered(findings: Sequence[Finding]) -> tuple[Finding, ...]:
-    """Return the findings with gaps, and zeros, of one severity as one, in the place of the first.
+    """Return the findings; gaps, zeros and copies of one severity are one, in place of the first.
 
     Markers and figures of each stay with the findings given.
     """
@@ -57,11 +61,30 @@ def _zeros(alike: Sequence[Finding]) -> Finding:
     )
 
 
+def _copies(alike: Sequence[Finding]) -> Finding:
+    frames = [f.frame for f in alike if f.frame is not None]
+    pairs = [" and ".join(f.markers) for f in alike]
+    listed = ", ".join(pairs if len(pairs) <= LISTED else [*pairs[:LISTED], "…"])
+    return Finding(
+        COINCIDENT,
+        alike[0].severity,
+        f"{len(alike)} pairs of markers are at the same place: {listed}",
+        "one of each is a copy: leave it out",
+        markers=tuple(dict.fromkeys(marker for f in alike for marker in f.markers)),
+        frame=min(frames),
+        numbers=(("pairs", len(alike)),),
+    )
+
+
 def _from_to(shares: Mapping[str, float]) -> str:
     low, high = f"{min(shares.values()):.1%}", f"{max(shares.values()):.1%}"
     return high if low == high else f"{low} to {high}"
 
 
-GATHERED: Mapping[str, Callable[[Sequence[Finding]], Finding]] = {"gap": _gaps, AT_ZERO: _zeros}
-"""Rules that are gathered: reconstructions in pieces, and exports without a sign for what is
-missing, have one finding for nearly every marker."""
+GATHERED: Mapping[str, Callable[[Sequence[Finding]], Finding]] = {
+    "gap": _gaps,
+    AT_ZERO: _zeros,
+    COINCIDENT: _copies,
+}
+"""Rules that are gathered: reconstructions in pieces, exports without a sign for what is missing
+and files that hold everything twice have one finding for nearly every marker."""

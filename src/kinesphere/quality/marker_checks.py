@@ -7,7 +7,7 @@ import numpy as np
 from kinesphere.data import Array, Recording
 from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.vectors import is_seen, lengths
-from kinesphere.quality.body import judged_columns, labelled_columns, thinned
+from kinesphere.quality.body import judged_columns, labelled_columns, lasting_columns, thinned
 from kinesphere.quality.findings import Finding
 from kinesphere.quality.gaps import runs
 
@@ -23,6 +23,9 @@ SAME_PLACE = 1e-3
 """m; two markers are 9 mm and more across."""
 FARTHEST = 1e5
 """m; what lies farther out was never measured: 32-bit floats tell it to 8 mm at best."""
+COINCIDENT = "coincident"
+TOGETHER = 0.9
+"""Share of the frames of the one seen less that show both, of a copy that nobody labelled."""
 STILL = 1e-6
 """m; a real marker jitters by a hundred times as much."""
 SAMPLED_FRAMES = 300
@@ -90,19 +93,28 @@ def _stands(points: Array) -> bool:
 
 
 def check_coincident(recording: Recording) -> Iterator[Finding]:
-    """Find pairs that share one place in half the frames that have both."""
-    labelled = labelled_columns(recording)
+    """Find pairs that share one place in half the frames that have both.
+
+    Of two that nobody labelled, or one, only if they live long and side by side: else they are
+    pieces of one marker, and neither is a copy.
+    """
+    seen, labelled = recording.seen, set(labelled_columns(recording))
+    columns = sorted(labelled | set(lasting_columns(recording)))
     frames = even_frames(recording.n_frames, SAMPLED_FRAMES)
-    points = recording.markers[frames][:, labelled]
-    for i in range(len(labelled) - 1):
+    points = recording.markers[frames][:, columns]
+    often = seen[frames][:, columns].sum(axis=0)
+    for i, column in enumerate(columns[:-1]):
         distances = lengths(points[:, i + 1 :] - points[:, i : i + 1])
         together = np.isfinite(distances).sum(axis=0)
         same = (distances < SAME_PLACE).sum(axis=0)  # NaN compares as False
-        for j in np.flatnonzero((same > 0) & (2 * same >= together)):
-            pair = (recording.labels[labelled[i]], recording.labels[labelled[i + 1 + j]])
+        side_by_side = together >= TOGETHER * np.minimum(often[i], often[i + 1 :])
+        if column in labelled:
+            side_by_side |= [other in labelled for other in columns[i + 1 :]]
+        for j in np.flatnonzero((same > 0) & (2 * same >= together) & side_by_side):
+            pair = (recording.labels[column], recording.labels[columns[i + 1 + j]])
             frame = recording.first_frame + int(frames[(distances[:, j] < SAME_PLACE).argmax()])
             yield Finding(
-                "coincident",
+                COINCIDENT,
                 "warning",
                 f"{pair[0]} and {pair[1]} are at the same place from frame {frame} on",
                 "one of them is a copy: leave it out",

@@ -6,7 +6,7 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.geometry.pose_errors import pose_covariance
-from kinesphere.geometry.rigid import RigidFit, fit_rigid, fit_shape, into_frame
+from kinesphere.geometry.rigid import RigidFit, fit_rigid, fit_shape, into_frame, left_by_fit
 from kinesphere.geometry.vectors import lengths
 
 NOISE = 0.001
@@ -101,9 +101,8 @@ def measure_shape(
             return None
         fit = fit_rigid(shape, points, weights, min_spread=min_spread)
         residual = lengths(into_frame(fit.rotations, fit.shifts, points) - shape)
-        # the fit itself takes up six of the coordinates: what is left looks smaller than the noise
         if noise is None:
-            last, known = known, robust_rms(residual) * np.sqrt(3 * n / max(3 * n - 6, 1))
+            last, known = known, robust_rms(residual) * left_by_fit(np.isfinite(residual))
             if (np.abs(known - last) < STEADY * np.hypot(known, NOISE)).all():
                 break
     assert shape is not None  # every round has found one

@@ -23,9 +23,10 @@ from kinesphere.skeleton.chain import measure_chain
 from kinesphere.skeleton.far_centres import far_centres
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 from kinesphere.skeleton.measured import MeasuredJoint
+from kinesphere.skeleton.other_size import larger, with_lengths
 from kinesphere.skeleton.report import describe_joint, describe_limb
 from kinesphere.skeleton.sampling import spread_over_joints
-from kinesphere.skeleton.scale import scaled, size_share
+from kinesphere.skeleton.scale import scaled, size_share, times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.solve import solve_poses
 from kinesphere.skeleton.tree import find_tree
@@ -34,6 +35,10 @@ DEFAULT = SkeletonSettings()
 POOR = 0.03
 """m, rms residual from which on markers are no body: soft tissue leaves 22 mm at most."""
 
+TOO_LARGE = (
+    "nobody is so large: the unit of length is likely wrong; joints are judged as if it were "
+    "{:g} times smaller, and so are the millimetres said of them"
+)
 ELSEWHERE = {
     BETWEEN: "put midway between the markers of both limbs",
     STEADY: "put amid the markers that are steady in both limbs",
@@ -42,7 +47,11 @@ ELSEWHERE = {
 
 
 def fit_skeleton(
-    recording: Recording, model: TopologicalModel, settings: SkeletonSettings = DEFAULT
+    recording: Recording,
+    model: TopologicalModel,
+    settings: SkeletonSettings = DEFAULT,
+    *,
+    unit: float | None = None,
 ) -> Motion:
     """Measure limbs and joint centres from labelled markers, and the pose of every limb.
 
@@ -58,6 +67,11 @@ def fit_skeleton(
         With the labels of ``model``, in the world: y up, metres.
     model
         Which markers sit on which limb.
+    settings
+    unit
+        How many times too large lengths are, as far as that is known already: everything is
+        measured in lengths that suit people, and brought back. If None, 1, and aloud a power of ten
+        where nobody is so large.
 
     Returns
     -------
@@ -79,7 +93,13 @@ def fit_skeleton(
     frames = spread_over_joints(
         recording.markers, settings.sample_frames, tree.joint_columns(recording)
     )
-    asked, share = settings, size_share(recording.markers[frames][:, columns])
+    of_limbs = recording.markers[frames][:, columns]
+    known, unit = unit is not None, times_too_large(of_limbs) if unit is None else unit
+    if unit != 1:
+        smaller = with_lengths(recording, model, 1 / unit)
+        motion = fit_skeleton(*smaller, settings, unit=1.0)
+        return larger(motion, unit, "" if known else TOO_LARGE.format(unit))
+    asked, share = settings, size_share(of_limbs)
     settings = scaled(asked, share)
     markers = {label: recording.markers[:, i] for i, label in enumerate(recording.labels)}
     sample = {label: m[frames] for label, m in markers.items()}

@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.data import Array, Mask
-from kinesphere.geometry.joint_turns import nearest
-from kinesphere.geometry.linkage import Linkage, misfit
+from kinesphere.geometry.centre_covariance import Told
+from kinesphere.geometry.linkage import Linkage
 from kinesphere.geometry.linkage_fit import LinkageFit, fit_linkage
-from kinesphere.geometry.pose_worth import noise_share, overrated
+from kinesphere.geometry.linkage_shake import averaging_share, cleared_of_shake
+from kinesphere.geometry.pose_worth import overrated
 from kinesphere.geometry.range_of_motion import range_of_motion
 from kinesphere.geometry.vectors import is_seen, lengths
 from kinesphere.skeleton.averages import mean_seen, median_seen
@@ -135,17 +136,14 @@ def fit_group(
     near = off < STRAYED * np.array([j.spread for j in measured])  # not so where it is not finite
     told = np.linalg.eigvalsh(fit.information[1:])[:, 1]
     firm = told >= 1 / (settings.undetermined_mm * 1e-3) ** 2
-    share = _averaging_share(fit.linkage, points)
-    over = [overrated(share, len(points), n, settings.soft_tissue) for n in n_poses]
-    return GroupFit(_joints(group, fit, known, n_poses, over), not near.all(), bool(firm.all()))
-
-
-def _averaging_share(linkage: Linkage, points: Array) -> float:
-    """Return the share of the markers' strays that averages out over frames, 0…1."""
-    off = misfit(linkage, points, is_seen(points))
-    first, others = linkage.rotations[:, :1], linkage.rotations[:, 1:]
-    turns = np.swapaxes(first, 2, 3) @ others
-    return noise_share(off.reshape(len(off), -1), nearest(turns.reshape(len(turns), -1)))
+    seen = is_seen(points)
+    share = averaging_share(fit.linkage, points)
+    n_seen = round(len(points) * float(seen.mean()))  # what is hidden is no look
+    over = np.array([1.0, *(overrated(share, n_seen, n, settings.soft_tissue) for n in n_poses)])
+    spreads = np.array([0.0, *(j.spread for j in measured)])
+    cleared = cleared_of_shake(fit, seen, over, expected, spreads)
+    found = _joints(group, fit, known, n_poses, cleared, fit.linkage.centres - expected)
+    return GroupFit(found, not near.all(), bool(firm.all()))
 
 
 def _starts(
@@ -186,7 +184,12 @@ def _moved(rotations: Array, parent: int, child: int) -> float:
 
 
 def _joints(
-    group: tuple[str, ...], fit: LinkageFit, known: Mask, n_poses: list[int], over: list[float]
+    group: tuple[str, ...],
+    fit: LinkageFit,
+    known: Mask,
+    n_poses: list[int],
+    told: list[Told],
+    off: Array,
 ) -> dict[str, LinkedJoint]:
     linked = {}
     origins = fit.linkage.origins
@@ -195,7 +198,5 @@ def _joints(
         frames = np.full((len(known), 3, 3), np.nan)
         world[known] = origins[:, i]
         frames[known] = fit.linkage.rotations[:, fit.linkage.parents[i]]
-        linked[limb] = LinkedJoint(
-            world, frames, fit.information[i], over[i - 1], fit.scale, n_poses[i - 1]
-        )
+        linked[limb] = LinkedJoint(world, frames, told[i], off[i], fit.scale, n_poses[i - 1])
     return linked

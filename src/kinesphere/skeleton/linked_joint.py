@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.geometry.centre_covariance import Told
 from kinesphere.geometry.centres import CentreFit, with_expectation
 from kinesphere.geometry.rigid import into_frame
 from kinesphere.geometry.rotations import mean_rotation
@@ -20,10 +21,10 @@ class LinkedJoint(NamedTuple):
     """(n_sample, 3) m; NaN where a limb of the group is unseen."""
     frames: Array
     """(n_sample, 3, 3) the parent's poses as the group has them; NaN alike."""
-    information: Array
-    """(3, 3) 1/m² in the parent as the group has it, by weights as careful as skin asks for."""
-    over: float
-    """How many times the centre's variance is what these weights say."""
+    told: Told
+    """Of the centre in the parent as the group has it."""
+    off: Array
+    """(3,) m, there, from where it was expected to where it is."""
     noise: float
     """m."""
     n_poses: int
@@ -36,11 +37,6 @@ class LinkedJoint(NamedTuple):
         if not known.any():
             return None
         turn = mean_rotation(turns[known])
-        return with_expectation(
-            median_seen(local[known]),
-            turn @ self.information @ turn.T,
-            spread,
-            self.noise,
-            self.n_poses,
-            self.over,
-        )
+        told = Told(*(turn @ one @ turn.T for one in self.told))
+        centre = median_seen(local[known])
+        return with_expectation(centre, told, spread, self.noise, self.n_poses, turn @ self.off)

@@ -1,4 +1,4 @@
-"""Lengths that suit people, shrunk for what is much smaller: a hand, a finger, an insect."""
+"""Lengths that suit people: shrunk for a hand or an insect, grown where the unit must be wrong."""
 
 from dataclasses import replace
 
@@ -18,14 +18,28 @@ def size_share(markers: Array) -> float:
 
     Frames count by their median, so a few ghosts do not matter; 1 where nothing is seen.
     """
+    usual = _extent(markers)
+    return min(1.0, usual / PERSON) if usual > 0 else 1.0
+
+
+def times_too_large(markers: Array) -> float:
+    """Return 1, or the power of ten by which lengths are too large for any body, (n, m, 3) m.
+
+    From ten times `PERSON` on nobody is as large: a unit was taken for another one.
+    """
+    usual = _extent(markers)
+    return 10.0 ** max(0.0, np.floor(np.log10(usual / PERSON))) if usual > 0 else 1.0
+
+
+def _extent(markers: Array) -> float:
+    """Return the usual rms distance of markers from their middle, in m; NaN if none are seen."""
     seen = np.asarray(np.isfinite(markers).all(axis=2))
     count = np.maximum(seen.sum(axis=1), 1)
     at = np.where(seen[..., None], markers, 0.0)
     middle = at.sum(axis=1) / count[:, None]
     square = np.where(seen[..., None], (markers - middle[:, None]) ** 2, 0.0).sum(axis=(1, 2))
     extent = np.where(seen.sum(axis=1) > 1, np.sqrt(square / count), np.nan)
-    usual = float(median_seen(extent))
-    return min(1.0, usual / PERSON) if usual > 0 else 1.0
+    return float(median_seen(extent))
 
 
 def scaled(settings: SkeletonSettings, share: float) -> SkeletonSettings:

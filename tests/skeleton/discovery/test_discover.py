@@ -173,23 +173,25 @@ def test_how_numbers_lie_in_memory_does_not_matter(found, recorded, laid_out):
 def test_a_marker_over_a_joint_is_a_knee_s_half_width_from_its_centre_and_as_much_again(
     actor, recorded, rng
 ):
-    """6 cm on a person: a knee is 9 to 12 cm wide; in proportion on dolls."""
+    """6 cm on a person: a knee is 9 to 12 cm wide; in proportion on dolls and in other units."""
     names = list(actor.skeleton.limb_names)
     knee = next(j for j, joint in enumerate(actor.skeleton.joints) if joint.name == "left_knee")
     joint = actor.skeleton.joints[knee]
     axis = actor.motion.rotations[:, names.index(joint.parent)] @ joint.axes[0]
     over = actor.joint_centres[:, knee] + 0.05 * axis + rng.normal(scale=0.001, size=axis.shape)
     markers = np.concatenate([recorded.markers, over[:, None]], axis=1)
-    spreads = []
-    for size in (1.0, 0.1, 0.05):
+    spreads = {}
+    for size in (1.0, 0.25, 0.2, 0.1, 10.0):
         labels = (*recorded.labels, "knee")
         model = discover(replace(recorded, markers=size * markers, labels=labels)).model
         (landmark,) = (mark for joint in model.joints for mark in joint.landmarks)
         assert landmark.weights == {"knee": 1.0}
-        spreads.append(landmark.spread)
-    assert 0.045 < spreads[0] < 0.075
-    assert spreads[1] < 0.75 * spreads[0]
-    assert spreads[2] == pytest.approx(spreads[1] / 2)
+        spreads[size] = landmark.spread
+    assert 0.045 < spreads[1.0] < 0.075
+    assert spreads[0.25] < 0.75 * spreads[1.0]
+    assert spreads[0.2] == pytest.approx(0.8 * spreads[0.25])
+    for unit in (0.1, 10.0):
+        assert spreads[unit] == pytest.approx(unit * spreads[1.0])
 
 
 def test_the_same_input_gives_the_same_output(found, recorded):

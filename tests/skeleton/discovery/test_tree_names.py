@@ -43,12 +43,17 @@ class Partitioned:
     belonging = SimpleNamespace()
 
 
+@pytest.fixture(autouse=True)
+def no_animal(monkeypatch):
+    monkeypatch.setattr(tree_names, "make_figure", lambda _c, _b, pairs, *_: pairs)
+    monkeypatch.setattr(tree_names, "cost_of_animal", lambda *_: np.inf)
+
+
 @pytest.mark.parametrize(("gain", "taken"), [(3.0, False), (6.0, True)])
 def test_another_tree_is_taken_where_it_is_a_likelier_person(monkeypatch, gain, taken):
     """A rival that costs a quarter more has to be a person by 20 log 1.25 = 4.5 the likelier."""
-    monkeypatch.setattr(tree_names, "make_figure", lambda _c, _b, pairs, *_: pairs)
 
-    def names(pairs, tree):
+    def names(pairs, tree, _animal):
         apart = (0, 2) in pairs or (2, 0) in pairs
         return Names(dict.fromkeys(tree, "trunk"), 0.9, {}, cost=10.0 - gain * apart)
 
@@ -62,8 +67,24 @@ def test_another_tree_is_taken_where_it_is_a_likelier_person(monkeypatch, gain, 
 
 
 def test_where_nobody_is_seen_the_likeliest_tree_stays(monkeypatch):
-    monkeypatch.setattr(tree_names, "make_figure", lambda _c, _b, pairs, *_: pairs)
-    monkeypatch.setattr(tree_names, "find_names", lambda _f, tree: no_names(tree))
+    monkeypatch.setattr(tree_names, "find_names", lambda _f, tree, _a: no_names(tree))
     partition, _, found = tree_names.named_tree(Partitioned(chain(1.25)), None, DiscoverySettings())
     assert partition.forest.neighbours(1) == [0, 2]
     assert not found.given
+
+
+def test_an_animal_seen_in_any_likely_tree_is_a_rival_in_all_of_them(monkeypatch):
+    """Seen where a joint costs a quarter more it costs 4.5 more; from there, 4.5 less."""
+    seen = []
+
+    def animal(pairs, _tree):
+        return 7.0 if (0, 2) in pairs or (2, 0) in pairs else np.inf
+
+    def names(pairs, tree, rival):
+        seen.append(rival)
+        return no_names(tree)
+
+    monkeypatch.setattr(tree_names, "cost_of_animal", animal)
+    monkeypatch.setattr(tree_names, "find_names", names)
+    tree_names.named_tree(Partitioned(chain(1.25)), None, DiscoverySettings())
+    assert seen == pytest.approx([7 + 20 * np.log(1.25), 7.0, 7.0])

@@ -13,6 +13,7 @@ from kinesphere.data import (
 from kinesphere.errors import BadRecording
 from kinesphere.geometry.lifetimes import worth_grouping
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
+from kinesphere.skeleton.discovery.continued import find_continued
 from kinesphere.skeleton.discovery.copies import find_copies, with_pieces, with_pieces_joined
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
 from kinesphere.skeleton.discovery.names import settled
@@ -27,7 +28,11 @@ from kinesphere.skeleton.discovery.tree_names import named_tree
 from kinesphere.skeleton.discovery.trust import shaken
 from kinesphere.skeleton.discovery.twigs import without_twigs
 from kinesphere.skeleton.sampling import spread_frames
+from kinesphere.skeleton.scale import times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
+
+LISTED = 8
+"""Pieces that are named in the warning; the findings hold all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +43,9 @@ class Discovery:
     """Of the tree that was asked for."""
     step: Step
     """What was found and how sure it is, other trees and loose markers included."""
+    unit: float | None = None
+    """By which power of ten lengths are too large, or below 1 too small, for the person that was
+    found; for `fit_skeleton`. None where nothing says so."""
 
 
 def discover(
@@ -89,6 +97,13 @@ def discover(
     if twice := [*copies, *pieces]:
         markers = np.delete(with_pieces_joined(markers, pieces), twice, axis=1)
         columns = np.delete(columns, twice)
+    if later := find_continued(markers, recording.rate, columns):
+        found_again = {
+            recording.labels[columns[p]]: recording.labels[columns[w]] for p, w in later.items()
+        }
+        continued = {p: found_again.get(w, w) for p, w in continued.items()} | found_again
+        markers = np.delete(with_pieces_joined(markers, later), [*later], axis=1)
+        columns = np.delete(columns, [*later])
     points = np.ascontiguousarray(markers[spread_frames(markers, settings.sample_frames)])
     limits = skeleton or SkeletonSettings()
     costs = JointCosts(points, unit)
@@ -99,13 +114,16 @@ def discover(
     partition, tree, names = named_tree(partition, costs, settings)
     if settings.bodies is None:
         partition, tree, names = without_twigs(partition, tree, names, settings, limits)
-    forest = from_the_root(partition, names.limbs, labels, limits)
+    of_tree = [m for body in tree for m in partition.bodies[body]]
+    person = names.too_large if names.too_large != 1 else None
+    times = person or times_too_large(points[:, of_tree] * unit)
+    forest = from_the_root(partition, names.limbs, labels, limits, times)
     tree = next(t for t in forest.trees if tree[0] in t)
     partition = replace(partition, forest=forest)
     counted = 1.0 if settings.bodies else partition.clustering.count_confidence
     names = shaken(settled(names, tree), forest, counted)
     limb_of = {body: names.limbs[body] for body in tree}
-    model = tree_model(partition, costs, limb_of, labels, recording.labels)
+    model = tree_model(partition, costs, limb_of, labels, recording.labels, times)
     if continued:
         model = with_pieces(model, continued, recording.labels)
     near = settings.near_mm * 1e-3
@@ -120,6 +138,7 @@ def discover(
         findings=account_of(partition, labels, ghosts, model, names, limb_of, near)
         | {"copies": dict(alike), "pieces": dict(continued)},
         warnings=_told_of_copies(alike)
+        + _told_of_pieces(continued)
         + doubts_about(
             partition,
             labels,
@@ -130,7 +149,7 @@ def discover(
             faint=_faint(partition, costs, limb_of, model),
         ),
     )
-    return Discovery(model, step)
+    return Discovery(model, step, person)
 
 
 def _check_tree(partition: Partition, number: int) -> None:
@@ -145,6 +164,14 @@ def _told_of_copies(alike: dict[str, str]) -> tuple[str, ...]:
         return ()
     pairs = ", ".join(f"{copy} (as {kept})" for copy, kept in alike.items())
     return (f"trajectories that are there twice are left out but for one: {pairs}",)
+
+
+def _told_of_pieces(whole_of: dict[str, str]) -> tuple[str, ...]:
+    if not whole_of:
+        return ()
+    pairs = [f"{piece} ({whole})" for piece, whole in whole_of.items()]
+    listed = ", ".join(pairs if len(pairs) <= LISTED else [*pairs[:LISTED], "…"])
+    return (f"{len(pairs)} trajectories are taken for pieces of others: {listed}",)
 
 
 def _faint(

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.special import expit
 
 from kinesphere.skeleton.discovery.figure import Figure
 from kinesphere.skeleton.discovery.person import Person
@@ -38,7 +39,7 @@ def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | N
 
 def confidence_of(cost: float, rival: float) -> float:
     """Return 0…1 that a reading is right rather than one of another cost."""
-    return float(1 / (1 + np.exp(-(rival - cost) / SHARPNESS)))
+    return float(expit((rival - cost) / SHARPNESS))
 
 
 def _contradicts(one: Person, best: Person) -> bool:

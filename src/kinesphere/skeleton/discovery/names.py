@@ -18,6 +18,10 @@ NOBODY = (
     "no person is seen in the tree of bodies; limbs are numbered. If it was a person, bodies or "
     "joints are wrong, or limbs have no markers"
 )
+ANIMAL = (
+    "by proportions alone the tree could be a person, but four legs of equal length across the "
+    "trunk are rather an animal's: limbs are numbered"
+)
 LEG = ("thigh", "shank", "foot")
 ARM = ("upper_arm", "forearm", "hand")
 
@@ -40,6 +44,8 @@ class Names:
     """Bodies that are a person's limbs, though not told which."""
     refused: str = ""
     """Why these names are not given after all: the reading is good, the size is not a person's."""
+    too_large: float = 1.0
+    """By which power of ten lengths are too large, or below 1 too small, if this is a person."""
 
     @property
     def given(self) -> bool:
@@ -47,11 +53,19 @@ class Names:
         return bool(np.isfinite(self.confidence))
 
 
-def find_names(figure: Figure, tree: Sequence[int]) -> Names:
+def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> Names:
     """Name the bodies of a tree.
 
     A person needs two legs of two bodies at least; left and right need feet, bent knees or bent
     elbows. Without sides pelvis, trunk and head keep their names and the rest is numbered.
+
+    Parameters
+    ----------
+    figure
+    tree
+        The bodies of the tree.
+    animal
+        What it costs to see an animal instead, in this tree or one that is about as likely.
     """
     found = find_person(figure, tree)
     nobody = no_names(tree, NOBODY)
@@ -60,21 +74,29 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     person, confidence = found
     if not person.convincing:
         return replace(nobody, cost=person.cost)
+    beside_animal = confidence_of(person.cost, animal)
+    confidence = min(confidence, beside_animal)
     account: dict[str, Json] = {
         "person": True,
         "tree_confidence": round(confidence, 3),
         "cost_per_length": round(person.cost / person.lengths, 2),
         "stature_m": round(person.stature, 2),
     }
+    if beside_animal < SURE:
+        account |= {"person": False}
+        return replace(no_names(tree, ANIMAL), account=account, cost=person.cost)
     if confidence < SURE:
         return replace(no_names(tree, _ambiguous(confidence)), account=account, cost=person.cost)
-    refused = ""
+    refused, times = "", 1.0
     if not person.of_human_size:
+        times = person.times_too_large
         refused = (
             "by its proportions the tree could be a person, but the size is not a person's "
             f"(legs of someone of {person.stature:.2f} m): limbs are numbered; if it was a "
             "person, the unit of length is wrong"
         )
+        if times != 1:
+            refused += f", and joints are judged as if lengths were {1 / times:g} times as large"
     elif (sized := confidence_of(person.cost + person.size, person.nobody)) < confidence:
         confidence = sized
         refused = "" if sized >= SURE else _ambiguous(sized)
@@ -84,7 +106,7 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
         doubt = "nothing tells left from right; arms and legs are numbered"
         unnamed = frozenset(person.limbs.keys() - given.keys())
         return Names(
-            numbered(given, tree), confidence, account, doubt, person.cost, unnamed, refused
+            numbered(given, tree), confidence, account, doubt, person.cost, unnamed, refused, times
         )
     account |= {"sides_confidence": round(sides.confidence, 3)}
     account |= {f"sides_from_{name}": round(score, 2) for name, score in sides.scores.items()}
@@ -104,7 +126,7 @@ def find_names(figure: Figure, tree: Sequence[int]) -> Names:
     ]
     doubt = "; ".join(told for told in doubts if told)
     unnamed = frozenset(person.limbs.keys() - given.keys())
-    return Names(limbs, sure, account, doubt, person.cost, unnamed, refused)
+    return Names(limbs, sure, account, doubt, person.cost, unnamed, refused, times)
 
 
 def settled(names: Names, tree: Sequence[int]) -> Names:

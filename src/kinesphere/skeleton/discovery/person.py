@@ -9,6 +9,9 @@ LIKELY = 2.0
 is expected, of what is none far more."""
 STATURE, SIZES = 1.6, 0.25
 """m, and standard deviation of its logarithm: from a child of two, 0.85 m, to a tall adult."""
+NEAR_TEN = 0.25
+"""How far the decimal logarithm of a stature may be off for another unit of length to be why: of
+0.09 to 0.28 m it may be a person in a wrong unit, of 0.5 m a doll."""
 
 
 Arm = tuple[int, tuple[int, ...]]
@@ -56,6 +59,12 @@ class Person:
     def of_human_size(self) -> bool:
         """Whether proportions and size together are those of a person."""
         return self.cost + self.size <= self.nobody
+
+    @property
+    def times_too_large(self) -> float:
+        """The power of ten that leads to a person's stature, 1 where none does."""
+        times = np.log10(self.stature / STATURE)
+        return float(10.0 ** round(times)) if abs(times - round(times)) < NEAR_TEN else 1.0
 
     @property
     def hips_at(self) -> int:

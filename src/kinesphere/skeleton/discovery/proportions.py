@@ -20,6 +20,8 @@ LONE_ARMS = {"whole": UPPER_ARM + FOREARM, "upper": UPPER_ARM}
 LONE_ARM, PLAIN_LENGTH = 0.25, 0.75
 """Standard deviation of that length's logarithm, and how many of them off it is plainly such an
 arm: whole arms of a person had 0.30 to 0.35 of stature, half of one with the hand 0.26."""
+SHORT = 0.3
+"""Standard deviation of the logarithm of a shank's length to its farthest marker."""
 MISSING = 4.0
 """Cost of a foot, a forearm, an arm or the head that is not there, or not by itself: as much as two
 standard deviations."""
@@ -39,14 +41,17 @@ def judged(figure: Figure, person: Person, n_bodies: int) -> Person:
     legs = [figure.ends(person.hips_at, leg) for leg in person.legs]
     thighs = [figure.length(leg[0], leg[1]) for leg in legs]
     shanks = [figure.length(leg[1], leg[2]) for leg in legs]
-    stature = (sum(thighs) + sum(shanks)) / 2 / (THIGH + SHANK)
+    ankles = min(len(leg) for leg in person.legs) > 2
+    # without feet a shank ends at a marker, wherever that is
+    bones, share = (thighs + shanks, THIGH + SHANK) if ankles else (thighs, THIGH)
+    stature = sum(bones) / 2 / share
     if not stature > 0:
         return person
     offs = [
         *(off(length, THIGH * stature, 0.15) for length in thighs),
-        *(off(length, SHANK * stature, 0.15) for length in shanks),
+        *(off(length, SHANK * stature, 0.15 if ankles else SHORT) for length in shanks),
         off(thighs[0], thighs[1], 0.1),
-        off(shanks[0], shanks[1], 0.1),
+        off(shanks[0], shanks[1], 0.1 if ankles else SHORT),
         off(figure.length(legs[0][0], legs[1][0]), HIPS * stature, 0.4),
     ]
     missing = 0.0

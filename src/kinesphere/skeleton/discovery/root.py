@@ -18,6 +18,7 @@ def from_the_root(
     limb_of: dict[int, str],
     labels: Sequence[str],
     limits: SkeletonSettings,
+    too_large: float = 1.0,
 ) -> Forest:
     """Return the forest with the tree hanging from its pelvis or, without one, from its trunk.
 
@@ -33,13 +34,16 @@ def from_the_root(
         Of the partition's markers.
     limits
         What counts as an outlier and as a line, of a person.
+    too_large
+        How many times too large lengths are in the recording.
 
     Raises
     ------
     DegenerateMotion
         If no body tells where it points.
     """
-    forest, points, unit = partition.forest, partition.rigidity.points, partition.unit
+    forest, points = partition.forest, partition.rigidity.points
+    unit = partition.unit / too_large
     tree = np.concatenate([partition.bodies[body] for body in limb_of])
     share = size_share(points[:, tree] * unit)  # not of all who are there
     outlier = scaled(limits, share).outlier_mm * 1e-3 / unit

@@ -27,8 +27,12 @@ def tree_model(
     limb_of: dict[int, str],
     labels: Sequence[str],
     in_file: Sequence[str],
+    too_large: float = 1.0,
 ) -> TopologicalModel:
-    """Return the model of one tree; ``limb_of`` has its bodies in order, the root first."""
+    """Return the model of one tree; ``limb_of`` has its bodies in order, the root first.
+
+    The recording's lengths are ``too_large`` times what they should be.
+    """
     at = {label: column for column, label in enumerate(in_file)}
     owner = owners(partition.bodies, len(labels))
     visits = {m: int(partition.belonging.neighbour[m]) for m in partition.shared}
@@ -47,7 +51,7 @@ def tree_model(
         over = [m for m, there in visits.items() if {int(owner[m]), there} == {edge.a, edge.b}]
         landmark = Landmark(
             weights={labels[m]: 1 / len(over) for m in over},
-            spread=AT_THE_JOINT * size_share(costs.points * costs.unit),
+            spread=AT_THE_JOINT * too_large * size_share(costs.points * costs.unit / too_large),
             source=STEADY,
         )
         joints.append(

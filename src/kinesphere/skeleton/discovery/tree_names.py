@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.skeleton.discovery.animal import cost_of_animal
 from kinesphere.skeleton.discovery.figure import make_figure
 from kinesphere.skeleton.discovery.forest import Forest
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
@@ -38,13 +39,17 @@ def named_tree(
         over.setdefault(pair, []).append(m)
     places: dict[frozenset[int], Array] = {}
 
-    best: tuple[float, Forest, tuple[int, ...], Names] | None = None
+    ways = []
     for forest, unlikely in similar_forests(partition.forest, at):
         there = next(t for t in forest.trees if tree[0] in t)
         pairs = [(edge.a, edge.b) for edge in forest.edges if edge.a in there]
         figure = make_figure(costs, partition.bodies, pairs, over, places)
-        names = find_names(figure, there)
-        cost = names.cost + UNLIKELY * unlikely if names.given else np.inf
+        ways.append((UNLIKELY * unlikely, forest, there, figure))
+    animal = min(off + cost_of_animal(figure, there) for off, _, there, figure in ways)
+    best: tuple[float, Forest, tuple[int, ...], Names] | None = None
+    for off, forest, there, figure in ways:
+        names = find_names(figure, there, animal - off)
+        cost = names.cost + off if names.given else np.inf
         if best is None or cost < best[0]:
             best = cost, forest, there, names
     assert best is not None  # the forest itself is the first
