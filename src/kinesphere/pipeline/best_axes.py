@@ -86,8 +86,9 @@ def with_best_axes(
         best = min(several, key=lambda one: _order(one, joint.name))
         bearing, by_name = into_frames_of(skeleton, _bearing(joint, best), best.base.skeleton)
         joints.append(bearing)
-        if by_name:
-            named.setdefault(best.base.name, {}).update(by_name)
+        for source, limbs in ((best.base.name, by_name), *_named_donors(joint, best, told)):
+            if limbs:
+                named.setdefault(source, {}).update(limbs)
         known = bearing.axes_uncertainty
         unsure = [] if known is None else or_null(np.rad2deg(known))
         found[joint.name] = {**best.fit.findings, "axes_uncertainty_deg": unsure}
@@ -141,6 +142,16 @@ def _mixed(name: str, told: Sequence[_Told], settings: AxesSettings) -> Iterator
                 both = joined(base, other.fit, PROXIMAL, given, closest, turn, unsure)
                 if both is not None:
                     yield _Told(both, one.base, one.again or other.again)
+
+
+def _named_donors(
+    joint: Joint, best: _Told, told: Sequence[_Told]
+) -> Iterator[tuple[str, dict[str, str]]]:
+    """Yield recordings that gave an axis by the name of the parent's frame, and why."""
+    for other in told:
+        if other.base.name in best.fit.reused_from and other.base.name != best.base.name:
+            why = _turn(joint.name, best.base, other.base).why_named
+            yield other.base.name, {joint.parent: why} if why else {}
 
 
 def _order(told: _Told, name: str) -> tuple[object, ...]:
