@@ -42,10 +42,10 @@ def turn_between(limb: Limb, other: Limb) -> Turn:
     known = np.isfinite(here).all(axis=1) & np.isfinite(there).all(axis=1)
     here, there = here[known], there[known]
     n = len(here)
+    if n > 1 and np.array_equal(here, there):
+        return Turn(np.eye(3), 0.0)  # one solution stays as it is, to the last digit
     if n < 3:
         return _named("fewer than three markers in both" if n else "no markers in both")
-    if np.array_equal(here, there):
-        return Turn(np.eye(3), 0.0)  # one solution stays as it is, to the last digit
     fit = fit_rigid(there, here[None])
     if not fit.fitted[0]:
         return _named("markers on a line")
