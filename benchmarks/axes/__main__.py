@@ -12,6 +12,7 @@ from typing import Any
 
 from benchmarks.axes import (
     angles,
+    doubts,
     estimators,
     filters,
     floor,
@@ -127,6 +128,7 @@ SECTIONS: Mapping[str, Callable[[Run, Path], dict[str, Any]]] = {
         "free": free_motion.summary(run("free motion", free_motion.run, free_motion.TASKS))
     },
     "served": free_served.section,
+    "doubts": doubts.section,
     "floor": lambda run, _: {
         "floor": floor.summary(run("floor of free motion", floor.run, floor.TASKS))
     },

@@ -157,7 +157,7 @@ def make_calibration(
         reach = np.deg2rad(AMPLITUDES[axis]) * rng.uniform(1 - JITTER, 1 + JITTER)
         angles[during, axis] += reach * np.sin(np.pi * (t[during] - start))
         about[during, axis] = True
-    return _joint(rng, cones, noise, angles, about)
+    return joint_of(rng, cones, noise, angles, about)
 
 
 def make_free_motion(
@@ -174,7 +174,7 @@ def make_free_motion(
     n = round(RATE * seconds)
     play = swing if rhythm else drift
     angles = np.column_stack([np.deg2rad(reach) * play(rng, n) for reach in (*amplitudes, twist)])
-    return _joint(rng, cones, noise, angles, np.ones((n, 2), dtype=bool))
+    return joint_of(rng, cones, noise, angles)
 
 
 def poses(axes: Array, rest: Array, long_axis: Array, angles: Array) -> Array:
@@ -239,9 +239,15 @@ def draw_axes(rng: np.random.Generator, cones: Cones) -> tuple[Array, Array]:
     return axes @ turn.T, turn @ direction
 
 
-def _joint(
-    rng: np.random.Generator, cones: Cones, noise: Noise, angles: Array, about: Mask
+def joint_of(
+    rng: np.random.Generator, cones: Cones, noise: Noise, angles: Array, about: Mask | None = None
 ) -> TrueJoint:
+    """Return a joint with axes of its own that moves by some angles, (n, 3) rad, noise put on it.
+
+    Without ``about``, (n, 2), it moves on purpose about both axes all the time.
+    """
+    if about is None:
+        about = np.ones((len(angles), 2), dtype=bool)
     axes, direction = draw_axes(rng, cones)
     rest = np.eye(3)  # normalized frames: the limb is aligned with its parent at rest
     long_axis = direction

@@ -6,6 +6,7 @@ from typing import Any
 from benchmarks.axes import (
     angles,
     bends,
+    doubts,
     estimators,
     filters,
     free_motion,
@@ -69,6 +70,7 @@ def page(found: dict[str, Any]) -> str:
             one_wide.page(found.get("one", {})),
             free_motion.page(found["free"], found["floor"], found.get("held", {})),
             free_served.page(found.get("served", {})),
+            doubts.page(found.get("doubts", {})),
             angles.page(found["angles"]),
             normalization.page(found["normalization"]),
             same_person.page(found.get("same_person", {})),

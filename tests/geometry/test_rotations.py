@@ -6,10 +6,12 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from kinesphere.geometry.rotations import (
+    carried,
     quaternions_from_rotations,
     rotation_about,
     rotation_exp,
     rotation_log,
+    turned,
 )
 
 EXACT = 1e-14
@@ -65,3 +67,22 @@ def test_about_an_axis(rng):
     wanted = Rotation.from_rotvec(angles[known][:, None] * axis).as_matrix()
     assert_allclose(found[known], wanted, atol=EXACT)
     assert rotation_about(axis, np.float64(0.3)).shape == (3, 3)
+
+
+def test_turned_and_carried_are_what_products_give(rng, vectors):
+    rotations = rotation_exp(vectors)
+    axis = np.array([0.6, 0.0, -0.8])
+    angles = rng.uniform(-4, 4, size=len(rotations))
+    angles[3] = np.nan
+    rotations[5] = np.nan
+    given = rotations.copy()
+    assert_allclose(
+        turned(rotations, axis, angles), rotation_about(axis, angles) @ rotations, atol=EXACT
+    )
+    fixed = np.broadcast_to(rotations[0], rotations.shape)
+    assert_allclose(turned(fixed, axis, angles), rotation_about(axis, angles) @ fixed, atol=EXACT)
+    vector = rng.normal(size=3)
+    assert_allclose(carried(rotations, vector), rotations @ vector, atol=EXACT)
+    strided = np.stack([fixed, rotations], axis=1)[:, 1]
+    assert_allclose(carried(strided, vector), rotations @ vector, atol=EXACT)
+    assert_allclose(rotations, given, rtol=0)

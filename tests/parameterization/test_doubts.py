@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 from kinesphere.parameterization.confidence import AxesQuality
 from kinesphere.parameterization.doubts import reasons_to_doubt
@@ -14,7 +15,7 @@ SETTINGS = AxesSettings()
 AXIS = np.array([[0.0, 0.0, 1.0]])
 
 
-def quality(range_deg, halves_deg, reading_deg=0.0):
+def quality(range_deg, halves_deg, reading_deg=0.0, coupled_deg=0.0):
     """Return the quality of one axis."""
     return AxesQuality(
         labels=np.zeros(1, dtype=np.intp),
@@ -24,6 +25,7 @@ def quality(range_deg, halves_deg, reading_deg=0.0):
         halves=np.deg2rad([halves_deg]),
         heights=np.zeros(1),
         readings=np.deg2rad([reading_deg]),
+        coupled=np.deg2rad([coupled_deg]),
     )
 
 
@@ -66,6 +68,16 @@ def test_another_reading_of_the_movement_is_part_of_it():
     assert said.startswith("an axis is uncertain by 11.7°")
     assert said.endswith("if the limb twists with the angle, it is 9° off")
     assert "twists" not in doubts(12.5, 12.0)[0]
+
+
+def test_movement_about_another_axis_is_part_of_it():
+    told = quality(80.0, 2.0, coupled_deg=11.0)
+    skin = np.hypot(np.rad2deg(3 / 80), np.rad2deg(0.07))
+    assert np.rad2deg(told.uncertainty) == pytest.approx([np.sqrt(1 + 11**2 + skin**2)], 1e-3)
+    (said,) = reasons_to_doubt(told, AXIS, None, swing(80.0, 0.0), SETTINGS)
+    assert said.endswith("movement about another that goes with it can put it 11° off")
+    assert told.ordered([0]).coupled == told.coupled
+    assert_array_equal(told.only(0, 1).coupled, [np.nan, *told.coupled])
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from benchmarks.axes.doubts import one_rhythm
 from benchmarks.axes.generator import CONES, NOISES, RATE, make_free_motion, poses, spoil
 from benchmarks.axes.measures import line_angles
 from numpy.testing import assert_allclose
@@ -13,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from kinesphere.geometry.rotations import rotation_about, rotation_angle, tangent_basis
 from kinesphere.parameterization.axes import spectra
 from kinesphere.parameterization.axes.free_motion import FreeMotion, likeliest_axes
-from kinesphere.parameterization.axes.spectra import sparsest_axes
+from kinesphere.parameterization.axes.spectra import sparsest_axes, spread_of_axes
 from kinesphere.parameterization.axes.waves import (
     Stretch,
     both_of,
@@ -161,3 +162,24 @@ def test_evidence_of_fixed_variances_is_that_of_the_poses(rng):
     told = spectra._surprise(sizes, usual)
     # of a wave with x² + y² = s and 1/σ² gamma distributed of shape 1, scale s₀: s₀ / (s₀ + s/2)²
     assert told == pytest.approx(-np.log(usual / (usual + sizes / 2) ** 2).sum())
+
+
+def test_a_rhythm_that_angles_share_leaves_axes_uncertain_and_is_told(rng, twisting):
+    """Nothing but the spread tells: halves of such a motion are as alike as can be."""
+    motion = free_motion(twisting).thinned()
+    own = np.rad2deg(spread_of_axes(motion, twisting.axes))
+    assert own.shape == (2,)
+    assert own.max() < 3.0
+    shared = one_rhythm(rng, (30.0, 8.0, 8.0))
+    assert np.rad2deg(spread_of_axes(free_motion(shared).thinned(), shared.axes)).max() > 6.0
+
+
+def test_the_spread_is_the_size_of_errors(rng):
+    """Where each angle has rhythms of its own: waves' sizes and independence are not known."""
+    ratios = []
+    for _ in range(4):
+        joint = make_free_motion(rng, CONES["60–120°"], NOISES["OU 1°"], twist=10.0, seconds=20.0)
+        motion = free_motion(joint).thinned()
+        found = sparsest_axes(motion, near(rng, joint.axes)).axes
+        ratios.append(np.deg2rad(line_angles(found, joint.axes)) / spread_of_axes(motion, found))
+    assert 0.5 < np.sqrt(np.mean(np.square(ratios))) < 3.0

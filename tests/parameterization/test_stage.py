@@ -90,7 +90,8 @@ def test_findings_are_in_the_order_of_the_axes(solved):
         told = findings(solved, f"{side}_shoulder")
         halves, arcs = np.array(told["halves_disagreement_deg"]), np.array(told["ranges_deg"])
         skin = np.rad2deg(np.hypot(3.0 / arcs, 0.07))  # 3° of it over the arc, and its share
-        assert_allclose(np.rad2deg(joint.axes_uncertainty), np.hypot(halves / 2, skin))
+        same = np.hypot(told["alike_deg"], skin)
+        assert_allclose(np.rad2deg(joint.axes_uncertainty), np.hypot(halves / 2, same))
 
 
 def test_the_poses_come_back(performance, solved):

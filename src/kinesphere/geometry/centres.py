@@ -11,6 +11,7 @@ from kinesphere.geometry.centre_descent import descend, mean_residual
 from kinesphere.geometry.centre_terms import averaging_share, find_information
 from kinesphere.geometry.centre_views import Turning as Turning
 from kinesphere.geometry.centre_views import View as View
+from kinesphere.geometry.distinct_poses import count_poses
 from kinesphere.geometry.hinge_expectation import open_axis, tighter_along
 from kinesphere.geometry.medians import column_medians
 from kinesphere.geometry.pose_worth import overrated
@@ -20,8 +21,6 @@ from kinesphere.geometry.vectors import lengths
 
 Array = NDArray[np.float64]
 
-CELL = np.deg2rad(10.0)
-"""rad, poses nearer to each other than this count as one: soft tissue errs alike in both."""
 UNKNOWNS = 4
 """A centre's coordinates and a distance to it: so many looks tell nothing."""
 FAR = 10.0
@@ -103,14 +102,14 @@ def fit_centre(
     if _has_skin(view):
         if hinge is not None:
             prior = prior + tighter_along(view, expected, tighter) / spread**2
-        x, told = _fit(view, x, expected, prior, hidden, rounds)
+        x, told = _fit(view, x, expected, prior, n_poses, hidden, rounds)
     else:
         # nearly without expectation a centre may flee along the axis: no place to start from
-        loose = _fit(view, x, expected, 0.01 * prior, hidden, rounds)[1].pull
+        loose = _fit(view, x, expected, 0.01 * prior, n_poses, hidden, rounds)[1].pull
         along = None if hinge is None else open_axis(loose, spread, hinge)
         if along is not None:
             prior = prior + (tighter**2 - 1) / spread**2 * np.outer(along, along)
-        x, told = _fit(view, x, expected, prior, hidden, rounds)
+        x, told = _fit(view, x, expected, prior, n_poses, hidden, rounds)
         if along is not None:  # what was not asked has told nothing
             across = np.eye(3) - np.outer(along, along)
             told = Told(*(across @ one @ across for one in told))
@@ -172,10 +171,16 @@ def _has_skin(view: View) -> bool:
 
 
 def _fit(
-    view: View, x: Array, expected: Array, prior: Array, hidden: float, rounds: int
+    view: View,
+    x: Array,
+    expected: Array,
+    prior: Array,
+    n_poses: int,
+    hidden: float,
+    rounds: int,
 ) -> tuple[Array, Told]:
     """Return the centre, and what the motion tells about it."""
-    turning, n_poses = view.turning, count_poses(view, expected)
+    turning = view.turning
     if _has_skin(view):
         fit = fit_through_skin(view, x, expected, prior, n_poses, hidden=hidden, rounds=rounds)
         return fit.centre, fit.told
@@ -191,19 +196,6 @@ def _fit(
     # and no number of poses tells a centre better than what lasts lets it be the same
     lasts = (1 - share) * _robust_noise(view, x) ** 2
     return x, Told(information, over * information + lasts * information @ information)
-
-
-def count_poses(view: View, centre: Array) -> int:
-    """Return how many distinct poses there are: cells of `CELL` on the markers' spheres."""
-    most = 1
-    for seen in np.moveaxis(view.points, 1, 0) - centre:
-        y = seen[np.isfinite(seen).all(axis=1)]
-        if len(y) == 0:
-            continue
-        radius = max(float(np.median(np.linalg.norm(y, axis=1))), 1e-9)
-        cells = np.floor(y / (radius * CELL)).astype(np.int64)
-        most = max(most, len(np.unique(cells, axis=0)))
-    return most
 
 
 def _robust_noise(view: View, centre: Array) -> float:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.geometry.rotations import rotation_about
+from kinesphere.geometry.rotations import turned
 
 Array = NDArray[np.float64]
 
@@ -39,9 +39,10 @@ def joint_rotations(
     """
     if len(axes) == 3:
         angles = three_told(angles)
-    rotations = rotation_about(rest @ long_axis, np.nan_to_num(twists, nan=0.0)) @ rest
+    twists = np.nan_to_num(twists, nan=0.0)
+    rotations = turned(np.broadcast_to(rest, (len(twists), 3, 3)), rest @ long_axis, twists)
     for axis, angle in zip(axes, angles.T, strict=False):
-        rotations = rotation_about(axis, angle) @ rotations
+        rotations = turned(rotations, axis, angle)
     return rotations
 
 

@@ -29,8 +29,13 @@ def noise_share(strays: Array, near: NDArray[np.int64]) -> float:
     near : (n,)
         As `kinesphere.geometry.joint_turns.nearest_poses` returns it.
     """
-    apart = np.median(((strays - strays[near]) ** 2).sum(axis=1)) / 2
-    return min(float(apart / max(np.median((strays**2).sum(axis=1)), 1e-300)), 1.0)
+    apart = np.median(_squares(strays - strays[near])) / 2
+    return min(float(apart / max(np.median(_squares(strays)), 1e-300)), 1.0)
+
+
+def _squares(vectors: Array) -> Array:
+    """Return the squares of lengths, (n, k) → (n,)."""
+    return np.asarray(np.einsum("nk,nk->n", vectors, vectors))
 
 
 def pose_worth(share: float, crowd: Array, looks: float, hidden: float) -> Array:

@@ -30,5 +30,6 @@ def range_of_motion(relative: Array) -> float:
     known = known[even_frames(len(known), RANGE_SAMPLE)]
     off = rotation_angle(mean_rotation(known).T @ known)
     usual = known[off <= np.quantile(off, 0.95)]
-    trace = np.einsum("aij,bij->ab", usual, usual)
+    flat = usual.reshape(-1, 9)
+    trace = flat @ flat.T
     return float(np.arccos(np.clip((trace.min() - 1) / 2, -1.0, 1.0)))

@@ -217,12 +217,11 @@ def fit_shape(
         fit = fit_rigid(shape, points, w0 * doubt, min_spread=min_spread)
         aligned = into_frame(fit.rotations, fit.shifts, points)
         known = is_seen(aligned)
-        share = np.where(known, doubt, 0.0)
-        total = share.sum(axis=0)
+        whole = bool(known.all())
+        share = doubt if whole else np.where(known, doubt, 0.0)
+        placed = aligned if whole else np.where(known[..., None], aligned, 0.0)
         with np.errstate(invalid="ignore"):
-            mean = (share[..., None] * np.where(known[..., None], aligned, 0.0)).sum(0) / total[
-                :, None
-            ]
+            mean = np.einsum("nm,nmi->mi", share, placed) / share.sum(axis=0)[:, None]
         if not np.isfinite(mean).all(axis=1).any():
             return None  # what seemed a shape fits no frame
         mean -= _centre(mean, w0)
@@ -240,7 +239,7 @@ def fit_shape(
 
 def _centre(shape: Array, weights: Array) -> Array:
     known = np.isfinite(shape).all(axis=1)
-    centre: Array = np.average(shape[known], axis=0, weights=weights[known])
+    centre: Array = weights[known] @ shape[known] / weights[known].sum()
     return centre
 
 

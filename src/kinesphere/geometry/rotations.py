@@ -4,7 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.geometry.vectors import lengths
-from kinesphere.kernels.rotations import quaternions_kernel, rotation_vectors_kernel
+from kinesphere.kernels.rotations import (
+    quaternions_kernel,
+    rotation_vectors_kernel,
+    tangents_kernel,
+    turn_kernel,
+)
 
 Array = NDArray[np.float64]
 
@@ -27,11 +32,27 @@ def rotation_about(axis: Array, angles: Array) -> Array:
     return turned.reshape(*np.shape(angles), 3, 3)
 
 
+def turned(rotations: Array, axis: Array, angles: Array) -> Array:
+    """Return rotations turned about one unit axis, (n, 3, 3), (3,), (n,) rad → (n, 3, 3).
+
+    ``rotation_about(axis, angles) @ rotations`` in a quarter of the time; NaN stays NaN.
+    """
+    found = np.array(rotations, dtype=np.float64, order="C")
+    turn_kernel(np.ascontiguousarray(axis), np.sin(angles), np.cos(angles), found)
+    return found
+
+
+def carried(rotations: Array, vector: Array) -> Array:
+    """Return one vector turned by every rotation, (n, 3, 3) and (3,) → (n, 3).
+
+    One large product: a stack of small ones takes ten times as long.
+    """
+    return np.asarray((rotations.reshape(-1, 3) @ vector).reshape(-1, 3))
+
+
 def tangent_basis(axis: Array) -> Array:
     """Return two unit vectors perpendicular to a unit vector, (3,), and to each other, (2, 3)."""
-    first = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-    first /= np.linalg.norm(first)
-    return np.stack([first, np.cross(axis, first)])
+    return np.asarray(tangents_kernel(np.ascontiguousarray(axis)))
 
 
 def rotation_between(source: Array, target: Array) -> Array:
@@ -119,8 +140,11 @@ def mean_rotation(rotations: Array, weights: Array | None = None) -> Array:
 
     NaN entries are left out; ValueError if nothing is left.
     """
-    known = np.isfinite(rotations).all(axis=(1, 2))
+    flat = rotations.reshape(-1, 9)
+    w = np.ones(len(flat)) if weights is None else weights
+    known = np.isfinite(flat @ np.ones(9))
     if not known.any():
         raise ValueError("no rotation to average: all are NaN")
-    w = np.ones(len(rotations)) if weights is None else weights
-    return nearest_rotation(np.einsum("n,nij->ij", w[known], rotations[known]))
+    if not known.all():
+        flat, w = flat[known], w[known]
+    return nearest_rotation((w @ flat).reshape(3, 3))

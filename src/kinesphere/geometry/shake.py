@@ -43,9 +43,12 @@ def find_shake(
     metric = whitening.T @ whitening
     square, linear = _noise_gradient(metric, turning.pose)
     weighed = back * weights[:, None, None]
-    shake = np.einsum("nki,kl,nlj->ij", weighed, square, back, optimize=True)
-    drawn = np.einsum("nki,nk->i", weighed, turning.place(x) @ square + linear)
-    carried = np.einsum("nki,kl,nlj->ij", weighed, metric, back, optimize=True)
+    n = len(back)
+    # Σ w Bₖᵢ Bₗⱼ: all of the frames that either sum needs
+    products = (weighed.reshape(n, 9).T @ back.reshape(n, 9)).reshape(3, 3, 3, 3)
+    shake = np.einsum("kilj,kl->ij", products, square)
+    drawn = (turning.place(x) @ square + linear).ravel() @ weighed.reshape(-1, 3)
+    carried = np.einsum("kilj,kl->ij", products, metric)
     square, linear = _noise_gradient(carried, view.pose)
     return shake + square, drawn + square @ x + linear
 

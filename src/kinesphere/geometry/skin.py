@@ -135,7 +135,8 @@ def fit_through_skin(
         others = told[3:, 3:] + np.diag(ones)
         others[:3, :3] += 1e-9 * np.trace(told[3:6, 3:6]) * np.eye(3)
         # poses say how large their noise is, unless what is left is less
-        size = min(1.0, float(np.average((strays**2).sum(axis=1), weights=w)) / 3)
+        squares = np.einsum("nk,nk->n", strays, strays)
+        size = min(1.0, float(w @ squares / w.sum()) / 3)
         # what lasts and is fitted along does not shake: the share that does is known to lie between
         # `share` and one, for poses alike shake alike
         size *= 1.0 if hinge else np.sqrt(share)
@@ -156,7 +157,7 @@ def fit_through_skin(
     if hinge:
         moved = equations(view, turning, x, inner, whole)[1][:, :, 6:]
         pushed = np.einsum("nki,n,nkj->ij", free, w, moved, optimize=True)
-    scores = np.einsum("nki,n,nk->ni", free, w, strays, optimize=True)
+    scores = np.einsum("nki,nk->ni", free, w[:, None] * strays)
     scatter = scatter_of(scores, share, alike)
     scatter += (SKIN_TOLD * hidden / RIGID) ** 2 * pushed @ pushed.T + doubt
     return SkinFit(x, Told(heard @ curve, heard @ scatter @ heard.T))

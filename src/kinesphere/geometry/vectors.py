@@ -1,6 +1,6 @@
 """Points in space, many at once: which are seen, and how long vectors are. Arrays only.
 
-NumPy's reductions over an axis of three cost ten times what a product with three ones does.
+NumPy's reductions and products over an axis of three cost several times what its sums do.
 """
 
 import numpy as np
@@ -8,12 +8,10 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_ONES = np.ones(3)
-
 
 def is_seen(points: Array) -> NDArray[np.bool_]:
     """Return where points are seen, (..., 3) → (...): NaN in any coordinate is not seen."""
-    return np.asarray(np.isfinite(points @ _ONES))
+    return np.asarray(np.isfinite(points[..., 0] + points[..., 1] + points[..., 2]))
 
 
 def lengths(vectors: Array) -> Array:

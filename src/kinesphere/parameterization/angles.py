@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinesphere.data import Array, Mask
-from kinesphere.geometry.rotations import rotation_about
+from kinesphere.geometry.rotations import carried, turned
 from kinesphere.parameterization.branches import (
     CALM,
     branches_of_movement,
@@ -74,7 +74,7 @@ def solve_angles(
     if twist.method == "sampled":
         model = np.broadcast_to(rest, rotations.shape)
         for i, axis in enumerate(axes):
-            model = rotation_about(axis, solved.angles[:, i]) @ model
+            model = turned(model, axis, solved.angles[:, i])
         twists = sampled_twist(model, rotations, long_axis, np.deg2rad(twist.step))
     twists = np.where(twist_known, twists, np.nan)
     return JointAngles(solved.angles, twists, solved.excess, solved.sines)
@@ -85,10 +85,10 @@ def one_axis_angles(rotations: Array, axis: Array, rest: Array, long_axis: Array
 
     The limb can only go round its cone; ``excess`` says how far outside it is.
     """
-    p = rotations @ long_axis
+    p = carried(rotations, long_axis)
     r = rest @ long_axis
     theta = np.arctan2(np.cross(r, p) @ axis, p @ r - (r @ axis) * (p @ axis))
-    model = rotation_about(axis, theta) @ rest
+    model = turned(np.broadcast_to(rest, rotations.shape), axis, theta)
     angles = np.full((len(rotations), 3), np.nan)
     angles[:, 0] = theta
     off = np.abs(_colatitude(axis, p) - _colatitude(axis, r))

@@ -8,16 +8,13 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.parameterization.arcs import arcs_about
 from kinesphere.parameterization.axes.fit import Labels, phase_swing
+from kinesphere.parameterization.coupling import SHARE
 from kinesphere.parameterization.halves import Finder, halves_disagreement
 from kinesphere.parameterization.samples import JointSamples
 
 TISSUE = np.deg2rad(3.0)
 """rad, by which skin turns a limb over a movement, short or long: two knees of one person were 1 to
 14° off in arcs of 58 to 12°, 3.2° rms over the arc beside what their halves say."""
-SHARE = 0.07
-"""rad for a rad of the movement, that skin comes back about another axis, which turns the axis as
-much however long the arc; two knees of one person twist by 0.077 and 0.068 with their angle, which
-is such a share, of skin or not. About the limb itself `AxesQuality.readings` tells it."""
 
 
 def with_tissue(uncertainty: Array, ranges: Array) -> Array:
@@ -50,16 +47,24 @@ class AxesQuality:
     readings: Array
     """(n_axes,) rad, how far another reading of the same movement is off, rms by its probability:
     `kinesphere.parameterization.axes.hinge.other_reading`; 0 where there is none."""
+    coupled: Array
+    """(n_axes,) rad, how far movement about other axes that goes with an axis' own may put it off,
+    standard deviation: `kinesphere.parameterization.coupling`; 0 where none does."""
+
+    @property
+    def alike(self) -> Array:
+        """(n_axes,) rad, what no halving shows, for it goes with the movement: twist and others."""
+        return np.hypot(self.readings, self.coupled)
 
     @property
     def uncertainty(self) -> Array:
         """(n_axes,) rad, standard deviation of each axis.
 
         What halves suggest (they have twice the variance of the whole, their difference four
-        times), and what is alike in both: skin, by `TISSUE` over the arc and by `SHARE`, and twist
-        that goes with a hinge's angle.
+        times), and what is alike in both: skin, by `TISSUE` over the arc and by `SHARE`, twist
+        that goes with a hinge's angle, and other movement that goes with an axis' own.
         """
-        return with_skin(np.hypot(self.halves / 2, self.readings), self.ranges)
+        return with_skin(np.hypot(self.halves / 2, self.alike), self.ranges)
 
     def ordered(self, order: Sequence[int]) -> "AxesQuality":
         """Return the same for axes in another order."""
@@ -72,6 +77,7 @@ class AxesQuality:
             halves=self.halves[at],
             heights=self.heights[at],
             readings=self.readings[at],
+            coupled=self.coupled[at],
         )
 
     def only(self, told: int, at: int) -> "AxesQuality":
@@ -93,6 +99,7 @@ class AxesQuality:
             halves=placed(self.halves),
             heights=placed(self.heights),
             readings=placed(self.readings),
+            coupled=placed(self.coupled),
         )
 
 
@@ -124,6 +131,7 @@ def assess_axes(
         halves=halves_disagreement(samples, axes, labels, find, enough),
         heights=heights,
         readings=np.zeros(n_axes),
+        coupled=np.zeros(n_axes),
     )
 
 

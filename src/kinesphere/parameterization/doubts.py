@@ -83,7 +83,7 @@ def uncertain(quality: AxesQuality, which: int | None = None) -> str:
         "an axis is uncertain by {:.1f}°: its movement covers {:.0f}°, and two halves of it differ "
         "by {:.0f}°"
     ).format(*degrees)
-    return told + _if_it_twists(quality.readings[worst])
+    return told + _if_it_twists(quality.readings[worst]) + _if_coupled(quality.coupled[worst])
 
 
 def uncertain_in_free_motion(uncertainty: float, reading: float) -> str:
@@ -97,3 +97,10 @@ def _if_it_twists(reading: float) -> str:
     off = np.rad2deg(reading)
     told = f"; if the limb twists with the angle, it is {off:.0f}° off"
     return told if off >= WORTH_TELLING else ""
+
+
+def _if_coupled(off: float) -> str:
+    """Return how far movement about other axes puts one off, rad, to be put behind a clause."""
+    degrees = np.rad2deg(off)
+    told = f"; movement about another that goes with it can put it {degrees:.0f}° off"
+    return told if degrees >= WORTH_TELLING else ""

@@ -1,6 +1,6 @@
 """The axis of a hinge in free motion, where no main movement tells it: all of it together does."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.hinge import hinge_axis, other_reading
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.confidence import with_skin
+from kinesphere.parameterization.coupling import coupling
 from kinesphere.parameterization.samples import JointSamples, Phase
 from kinesphere.parameterization.settings import AxesSettings
 from kinesphere.parameterization.view import JointView
@@ -28,8 +29,8 @@ class FreeHinge:
     axis: Array
     """(3,)"""
     uncertainty: float
-    """rad, standard deviation of the direction of the axis: jackknife over the folds, skin, and
-    ``reading``."""
+    """rad, standard deviation of the direction of the axis: jackknife over the folds, skin,
+    ``reading``, and other movement that goes with it."""
     reading: float
     """rad, how far the axis is off if the limb twists with the angle: `other_reading`."""
     error: float
@@ -53,6 +54,9 @@ def hinge_worth_having(view: JointView, options: AxesSettings) -> FreeHinge | No
     found = free_hinge(view.samples, body_axis)
     if found is None or not found.clearly_better:
         return None
+    axis, moved = found.axis[None], np.array([found.moved])
+    coupled = float(coupling(view.samples, axis, moved, view.neighbours)[0])
+    found = replace(found, uncertainty=float(np.hypot(found.uncertainty, coupled)))
     far = np.arccos(min(1.0, abs(float(found.axis @ body_axis)))) > np.deg2rad(options.farthest)
     small = found.moved < np.deg2rad(options.smallest_range)
     loose = found.uncertainty > np.deg2rad(LOOSE * options.largest_uncertainty)

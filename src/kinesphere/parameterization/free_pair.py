@@ -7,13 +7,20 @@ from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.rotations import rotation_angle
 from kinesphere.parameterization.angles import two_axis_angles
 from kinesphere.parameterization.arcs import PERCENTILES
-from kinesphere.parameterization.axes.universal_joint import SHORTEST, reference_rotation
+from kinesphere.parameterization.axes.spectra import spread_of_axes
+from kinesphere.parameterization.axes.universal_joint import (
+    SHORTEST,
+    free_motion_of,
+    reference_rotation,
+)
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import AngleSettings, AxesSettings
 from kinesphere.parameterization.view import JointView
 
 CLOSEST = 30.0  # deg: about closer axes, large angles that cancel each other rebuild any motion
 FARTHER = 1.25  # times the range of the whole joint: right axes 70 to 110° apart go up to 1.11
+SHARED = 3.0  # times the spread that waves leave: errors are 2.1 times as large (rms) where the
+# angles have rhythms of their own, 3.3 where they share one
 COMPARED = 200  # poses, every one with every other
 
 
@@ -53,6 +60,11 @@ def free_ranges(view: JointView, axes: Array) -> tuple[Array, str]:
             f"rotation {np.rad2deg(most):.0f}°"
         )
     return np.minimum(ranges, most), said
+
+
+def shared_rhythm(samples: JointSamples, axes: Array) -> Array:
+    """Return how far two axes may be off for rhythms that their angles share, (2,) rad."""
+    return SHARED * spread_of_axes(free_motion_of(samples).thinned(), axes)
 
 
 def own_range(samples: JointSamples) -> float:

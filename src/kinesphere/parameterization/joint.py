@@ -127,7 +127,7 @@ def fit_joint(
         "axes_apart_deg": angles_between(axes),
         **quality_findings(quality),
     }
-    if source == "movement" and one is None and (reading := _reading(quality, free)) > 0:
+    if source == "movement" and n_axes == 1 and (reading := _reading(quality, free)) > 0:
         findings["other_reading_deg"] = float(np.rad2deg(reading))
     kept = ""
     if free is not None:

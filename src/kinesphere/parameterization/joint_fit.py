@@ -79,6 +79,7 @@ def quality_findings(quality: AxesQuality | None) -> dict[str, Json]:
         "conditioning": or_null(quality.conditioning),
         "explained": quality.explained,
         "halves_disagreement_deg": or_null(np.rad2deg(quality.halves)),
+        "alike_deg": or_null(np.rad2deg(quality.alike)),
     }
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from kinesphere.data import Codes, JointFlag, Mask, Motion, PoseFlag
+from kinesphere.geometry.rotations import carried
 from kinesphere.geometry.vectors import lengths
 from kinesphere.parameterization.angles import JointAngles
 from kinesphere.parameterization.joint_fit import JointFit
@@ -21,7 +22,6 @@ def flags_of(
     settings: ParameterizationSettings,
 ) -> Codes:
     """Return the JointFlags of joint ``j``, (n_frames,) uint8."""
-    limbs = [int(motion.skeleton.parents[j + 1]), j + 1]
     unseen = np.isnan(solved.angles[:, len(fit.axes) - 1])
     flags = np.where(unseen, JointFlag.UNSEEN, 0)
     with np.errstate(invalid="ignore"):
@@ -30,9 +30,10 @@ def flags_of(
     flags |= np.where(far, JointFlag.UNREACHABLE, 0)
     if len(fit.axes) > 1:
         flags |= np.where(edge | leaps(solved), JointFlag.SINGULAR, 0)
-    pose = motion.flags[:, limbs]
-    flags |= np.where(~unseen & (pose[:, 1] == PoseFlag.TWIST_UNKNOWN), JointFlag.TWIST_UNKNOWN, 0)
-    flags |= np.where(~unseen & (pose == PoseFlag.FILLED).any(axis=1), JointFlag.FILLED, 0)
+    parent, child = motion.flags[:, motion.skeleton.parents[j + 1]], motion.flags[:, j + 1]
+    filled = (parent == PoseFlag.FILLED) | (child == PoseFlag.FILLED)
+    flags |= np.where(~unseen & (child == PoseFlag.TWIST_UNKNOWN), JointFlag.TWIST_UNKNOWN, 0)
+    flags |= np.where(~unseen & filled, JointFlag.FILLED, 0)
     flags |= np.where(_torn(motion, j), JointFlag.DISLOCATED, 0)
     return flags.astype(np.uint8)
 
@@ -43,11 +44,13 @@ def leaps(solved: JointAngles) -> Mask:
     Only near a singular pose can angles leap while the limb does not: the solution passes to its
     other branch, between two frames if the motion is fast.
     """
-    angles = np.column_stack([solved.angles, solved.twists])
+    leap: Mask = np.zeros(max(0, len(solved.twists) - 1), dtype=bool)
     with np.errstate(invalid="ignore"):
-        turned = np.abs((np.diff(angles, axis=0) + np.pi) % (2 * np.pi) - np.pi)
-        leap = (turned > LEAP).any(axis=1)
-    beside: Mask = np.zeros(len(angles), dtype=bool)
+        for angles in (*solved.angles.T, solved.twists):
+            turned = np.diff(angles)
+            turned -= 2 * np.pi * np.rint(turned / (2 * np.pi))
+            leap |= np.abs(turned) > LEAP
+    beside: Mask = np.zeros(len(solved.twists), dtype=bool)
     beside[:-1] |= leap
     beside[1:] |= leap
     return beside
@@ -56,8 +59,10 @@ def leaps(solved: JointAngles) -> Mask:
 def _torn(motion: Motion, j: int) -> Mask:
     """Return where parent and child disagree about the joint far more than usual, (n_frames,)."""
     joint, parent = motion.skeleton.joints[j], motion.skeleton.parents[j + 1]
-    by_parent = motion.rotations[:, parent] @ joint.centre_in_parent + motion.origins[:, parent]
-    by_child = motion.rotations[:, j + 1] @ joint.centre_in_child + motion.origins[:, j + 1]
+    by_parent = (
+        carried(motion.rotations[:, parent], joint.centre_in_parent) + motion.origins[:, parent]
+    )
+    by_child = carried(motion.rotations[:, j + 1], joint.centre_in_child) + motion.origins[:, j + 1]
     apart = lengths(by_parent - by_child)
     known: Mask = np.isfinite(apart)
     if not known.any():

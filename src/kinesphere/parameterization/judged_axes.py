@@ -8,14 +8,17 @@ from kinesphere.data import Array
 from kinesphere.geometry.even_frames import parted
 from kinesphere.parameterization.anatomy import nominal_axes, room
 from kinesphere.parameterization.axes.hinge import other_reading
+from kinesphere.parameterization.axes.refinement import other_readings
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.confidence import AxesQuality, assess_axes
+from kinesphere.parameterization.coupling import coupling
 from kinesphere.parameterization.doubts import apart, reasons_to_doubt, uncertain
 from kinesphere.parameterization.free_hinge import worse_than_body
 from kinesphere.parameterization.free_pair import (
     CLOSEST,
     free_ranges,
     in_free_motion,
+    shared_rhythm,
     too_short,
 )
 from kinesphere.parameterization.halves import (
@@ -79,9 +82,20 @@ def judged(
     doubtful = 2 * np.deg2rad(options.largest_uncertainty)
     # a search in free motion takes seconds: once halves contradict each other that is that
     quality = assess_axes(samples, axes, find, doubtful if free else np.inf)
-    if n_axes == 1 and options.refine and options.method in BY_ORIENTATION:
-        quality = replace(quality, readings=np.array([other_reading(samples, axes[0])]))
+    if options.refine and options.method in BY_ORIENTATION:
+        one = n_axes == 1
+        readings = (
+            np.array([other_reading(samples, axes[0])])
+            if one
+            else other_readings(samples, axes, view.neighbours.wide)
+        )
+        quality = replace(quality, readings=readings)
     nominal = nominal_axes(view.name, axes) if view.human else None
+    if not free:
+        # a hinge has but one axis, whatever it does; beside main movements there is free motion
+        whole = view.samples if n_axes == 1 else samples
+        coupled = coupling(whole, axes, quality.ranges, view.neighbours)
+        quality = replace(quality, coupled=coupled)
     positions = view.samples.positions
     if free and (short := too_short(samples)):
         return MovementAxes(axes, quality, (short,))
@@ -90,7 +104,7 @@ def judged(
     else:
         if free:
             ranges, beyond = free_ranges(view, axes)
-            quality = replace(quality, ranges=ranges)
+            quality = replace(quality, ranges=ranges, coupled=shared_rhythm(samples, axes))
             closest = max(CLOSEST, options.smallest_angle)
             options = replace(options, smallest_explained=0.0, smallest_angle=closest)
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
@@ -98,19 +112,24 @@ def judged(
     if nominal is not None and n_axes == 1 and worse_than_body(axes[0], nominal[0], positions):
         doubts.append("the body frame's axis suits all the movement clearly better")
     pair = n_axes == 2 and not free
-    told = axis_told(quality, axes, view, options) if doubts and pair else None
+    told = axis_told(quality, axes, samples, view, options) if doubts and pair else None
     if doubts and told is None:
         return MovementAxes(axes, quality, tuple(doubts))
     quality, apart_by, alone = _contradicted(view, samples, axes, n_axes, quality, search, settings)
     if not doubts:
         doubts = reasons_to_doubt(quality, axes, nominal, positions, options)
-    told = axis_told(quality, axes, view, options) if doubts and pair else None
-    if told is not None and alone[told] > doubtful:
-        # another axis told would speak for it; alone it gives way to halves that are less alike
-        doubts.append(
-            f"halves of the time put the axis that is told {np.rad2deg(alone[told]):.0f}° apart"
-        )
-        told = None
+    told = axis_told(quality, axes, samples, view, options) if doubts and pair else None
+    if told is not None:
+        # another axis told would speak for it; alone it is as uncertain as halves of the time say
+        # that move as far, however few phases one has
+        apart_as_far = np.where(np.arange(len(axes)) == told, alone, np.nan)
+        quality = replace(quality, halves=np.fmax(quality.halves, apart_as_far))
+        apart_by = np.fmax(apart_by, quality.halves)
+        if axis_told(quality, axes, samples, view, options) != told:
+            doubts.append(
+                f"halves of the time put the axis that is told {np.rad2deg(alone[told]):.0f}° apart"
+            )
+            told = None
     remark = _remark(quality, apart_by, told, settings.axes)
     return MovementAxes(axes, quality, tuple(doubts), remark, told)
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from kinesphere.data import Array, Json
+from kinesphere.geometry.rotations import carried
 from kinesphere.geometry.vectors import lengths
 
 
@@ -21,7 +22,7 @@ def lever(centre_in_child: Array, length: float, long_axis: Array) -> Array:
 
 def mid_point_residuals(measured: Array, rebuilt: Array, mid_point: Array) -> Array:
     """Return the distance between the mid point of measured and rebuilt poses, (n,) m."""
-    return lengths((measured - rebuilt) @ mid_point)
+    return lengths(carried(measured - rebuilt, mid_point))
 
 
 def paper_measures(
@@ -35,7 +36,7 @@ def paper_measures(
     """
     reach = float(np.linalg.norm(mid_point))
     apart = measured - rebuilt
-    position = lengths(apart @ long_axis) * reach * 1e3
+    position = lengths(carried(apart, long_axis)) * reach * 1e3
     # chords of the axis pairs: precise for small angles, where cosines are not
     chords = np.einsum("nij,nij->nj", apart, apart)
     summed = np.rad2deg(2 * np.arcsin(np.minimum(np.sqrt(chords) / 2, 1)) @ np.ones(3))

@@ -9,6 +9,7 @@ from kinesphere.parameterization.free_pair import in_free_motion
 from kinesphere.parameterization.judged_axes import MovementAxes, judged
 from kinesphere.parameterization.main_movements import SHORTER, long_phases, main_movements
 from kinesphere.parameterization.one_of_two import REPEATED
+from kinesphere.parameterization.repeats import repeats
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.view import JointView
@@ -33,8 +34,7 @@ def movement_axes(view: JointView, n_axes: int, settings: ParameterizationSettin
             samples = among.with_phases(phases)
             axes = find(samples)
             if len(axes) == n_axes:
-                labels = phase_labels(samples, axes)
-                if min((labels == k).sum() for k in range(n_axes)) >= REPEATED:
+                if repeats(samples, axes, phase_labels(samples, axes)).min() >= REPEATED:
                     return samples, axes
                 once = once or (samples, axes)
         return once or (samples, axes)

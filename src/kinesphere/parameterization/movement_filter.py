@@ -56,11 +56,21 @@ def find_movement(
         Unseen frames never move. Without a valley the threshold is ``settings.fallback`` and
         ``valley`` is False; nothing is raised.
     """
-    literal = settings.method == "paper"
-    speeds = sample_speeds(positions, rate, 0.0 if literal else settings.window)
+    return movement_of(limb_speeds(positions, rate, settings), rate, settings, calibration)
+
+
+def limb_speeds(positions: Array, rate: float, settings: FilterSettings) -> Array:
+    """Return the speeds that movement is told by; arguments as `find_movement` takes them."""
+    return sample_speeds(positions, rate, 0.0 if settings.method == "paper" else settings.window)
+
+
+def movement_of(
+    speeds: Array, rate: float, settings: FilterSettings, calibration: Mask | None = None
+) -> Movement:
+    """Return `find_movement` of a limb with these speeds, (n_frames,) rad/s."""
     known = np.isfinite(speeds) if calibration is None else np.isfinite(speeds) & calibration
     threshold, valley = speed_threshold(speeds[known], settings)
-    if literal:
+    if settings.method == "paper":
         with np.errstate(invalid="ignore"):
             moving = np.asarray(speeds > threshold)
     else:

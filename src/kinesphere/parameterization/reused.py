@@ -27,6 +27,7 @@ CARRIED = (
     "conditioning",
     "explained",
     "halves_disagreement_deg",
+    "alike_deg",
     "other_reading_deg",
     "held_out_deg",
     "held_out_body_deg",

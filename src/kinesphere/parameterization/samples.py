@@ -1,10 +1,12 @@
 """A joint's motion as samples on its joint sphere (paper section 4), and their smoothing."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import butter, sosfilt_zi, sosfiltfilt
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array, Mask
@@ -13,6 +15,7 @@ from kinesphere.geometry.rotations import (
     quaternions_from_rotations,
     rotation_angle,
 )
+from kinesphere.kernels.low_pass import both_ways_kernel
 
 Frames = NDArray[np.intp]
 Phase = tuple[int, int]
@@ -128,16 +131,35 @@ def smooth_rotations(rotations: Array, rate: float, cutoff: float) -> Array:
     """
     if not 0 < cutoff < 0.45 * rate:
         return rotations
-    sos = butter(2, cutoff, fs=rate, output="sos")
+    sos, steady = _low_pass(rate, cutoff)
     rotations = without_spikes(rotations, rate)
     smooth = rotations.copy()
-    for start, stop in runs(np.asarray(np.isfinite(rotations).all(axis=(1, 2)))):
+    for start, stop in runs(np.isfinite(rotations.reshape(-1, 9) @ np.ones(9))):
         if stop - start < 4:
             continue
         q = quaternions_from_rotations(rotations[start:stop])
-        flips = np.where((q[1:] * q[:-1]).sum(axis=1) < 0, -1.0, 1.0)
-        q[1:] *= np.cumprod(flips)[:, None]
+        _align_signs(q)
         padding = min(stop - start - 1, int(np.ceil(rate / cutoff)))
-        there, back = (sosfiltfilt(sos, x, axis=0, padlen=padding) for x in (q, q[::-1]))
+        there, back = (_both_ways(sos, steady, x, padding) for x in (q, q[::-1].copy()))
         smooth[start:stop] = Rotation.from_quat(there + back[::-1]).as_matrix()
     return smooth
+
+
+def _align_signs(quaternions: Array) -> None:
+    """Give every quaternion, (n, 4), the sign that is nearer to the one before it, in place."""
+    products = np.einsum("ni,ni->n", quaternions[1:], quaternions[:-1])
+    quaternions[1:] *= np.cumprod(np.where(products < 0, -1.0, 1.0))[:, None]
+
+
+def _both_ways(sos: Array, steady: Array, values: Array, padding: int) -> Array:
+    """Return values, (n, 4), filtered forward and then backward."""
+    if getattr(numba.config, "DISABLE_JIT", False):  # uncompiled, the kernel takes very long
+        return np.asarray(sosfiltfilt(sos, values, axis=0, padlen=padding))
+    return both_ways_kernel(sos[0], steady, values, padding)
+
+
+@lru_cache
+def _low_pass(rate: float, cutoff: float) -> tuple[Array, Array]:
+    """Return the coefficients of a Butterworth filter, (1, 6), and its steady state, (2,)."""
+    sos = butter(2, cutoff, fs=rate, output="sos")
+    return sos, sosfilt_zi(sos)[0]

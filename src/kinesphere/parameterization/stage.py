@@ -19,6 +19,7 @@ from kinesphere.geometry.chain import joint_rotations
 from kinesphere.parameterization.anatomy import human_plan
 from kinesphere.parameterization.angles import unwrapped
 from kinesphere.parameterization.calibration_windows import windows_beyond, windows_of
+from kinesphere.parameterization.coupling import neighbours_of
 from kinesphere.parameterization.joint import solve_joint
 from kinesphere.parameterization.joint_fit import JointFit
 from kinesphere.parameterization.joint_flags import flags_of
@@ -91,6 +92,7 @@ def parameterize(
     findings: dict[str, Json] = {}
     seen: dict[str, Told] = {}
     fits: dict[str, JointFit] = {}
+    neighbours = neighbours_of(motion)
     for j, joint in enumerate(skeleton.joints):
         limb, parent = skeleton.limbs[j + 1], skeleton.parents[j + 1]
         rotations = np.swapaxes(world[:, parent], -1, -2) @ world[:, j + 1]
@@ -104,6 +106,7 @@ def parameterize(
             reliable_frames(motion.flags[:, [parent, j + 1]], windows[j]),
             settings,
             human,
+            neighbours=neighbours[j],
         )
         fit = own_or_reused(view, reuse, settings)
         solved = solve_joint(view, fit.axes, fit.rest, settings)

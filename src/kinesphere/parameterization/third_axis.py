@@ -28,7 +28,7 @@ from kinesphere.parameterization.view import JointView, view_joint
 
 LARGELY = 0.25  # of the frames: so often near a singular pose, three angles tell less than two
 TOLD = 0.9  # of the frames must tell the twist
-PER_AXIS = ("ranges_deg", "conditioning", "halves_disagreement_deg")
+PER_AXIS = ("ranges_deg", "conditioning", "halves_disagreement_deg", "alike_deg")
 
 
 def fit_axes(view: JointView, settings: ParameterizationSettings) -> JointFit:
@@ -123,6 +123,8 @@ def _without(view: JointView, twist: TwistAxis, settings: ParameterizationSettin
         calibration,
         settings,
         view.human,
+        view.smoothed,
+        view.neighbours,
     )
 
 
@@ -150,7 +152,7 @@ def _joined(
         axes = larger_excursion_positive(view, axes, fit.rest, settings)
     uncertainty = np.array([twist.uncertainty, *uncertainty])
     halves = float(np.rad2deg(twist.halves))
-    own = (float(np.rad2deg(twist.range)), twist.conditioning, halves)
+    own = (float(np.rad2deg(twist.range)), twist.conditioning, halves, 0.0)
     observed = fit.findings["n_axes_by_data"]
     spans: list[Json] = [list(t) for t in view.samples.with_phases(twist.phases).phase_times]
     swung = _listed(fit.findings.get("phases_s"))

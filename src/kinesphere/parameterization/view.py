@@ -6,12 +6,25 @@ import numpy as np
 
 from kinesphere.data import Array, Codes, Mask, PoseFlag
 from kinesphere.geometry.even_frames import parted
-from kinesphere.parameterization.movement_filter import Movement, find_movement
+from kinesphere.geometry.rotations import carried
+from kinesphere.parameterization.coupling import Neighbours
+from kinesphere.parameterization.movement_filter import Movement, limb_speeds, movement_of
 from kinesphere.parameterization.samples import JointSamples, runs, smooth_rotations
 from kinesphere.parameterization.settings import ParameterizationSettings
 
 FAIR_SHARE = 0.25  # of the seen frames; the others may show movements that these do not
+NONE = Neighbours()
 EDGE = 0.01  # of a frame: a frame on the edge of a window is inside, however its time is rounded
+
+
+@dataclass(frozen=True, eq=False)
+class Smoothed:
+    """A joint's rotations without noise, whichever frames count."""
+
+    rotations: Array
+    """(n_frames, 3, 3)"""
+    speeds: Array
+    """(n_frames,) rad/s, of the limb."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +43,12 @@ class JointView:
     movement: Movement
     calibration: Mask
     """(n_frames,) seen and reliable frames that axes and rest are taken from."""
+    smoothed: Smoothed
+    """All frames, those outside the calibration too."""
     human: bool = True
     """Whether anatomy says where this joint can have an axis."""
+    neighbours: Neighbours = NONE
+    """How limbs move at the joints that share a limb with this one."""
 
     @property
     def gravity(self) -> Array:
@@ -82,15 +99,22 @@ def view_joint(
     calibration: Mask,
     settings: ParameterizationSettings,
     human: bool = True,
+    smoothed: Smoothed | None = None,
+    neighbours: Neighbours = NONE,
 ) -> JointView:
     """Smooth one joint's rotations and find its movement phases; arguments as in `JointView`.
+
+    ``smoothed`` is what another view of the same joint has already.
 
     Frames outside ``calibration`` are neither found axes from nor smoothed into those that are; a
     phase runs on across the few that are missing inside it.
     """
     cutoff = 0.0 if settings.filter.method == "paper" else settings.filter.cutoff
-    smooth = smooth_rotations(rotations, rate, cutoff)
-    movement = find_movement(smooth @ long_axis, rate, settings.filter, calibration)
+    if smoothed is None:
+        smooth = smooth_rotations(rotations, rate, cutoff)
+        smoothed = Smoothed(smooth, limb_speeds(carried(smooth, long_axis), rate, settings.filter))
+    smooth = smoothed.rotations
+    movement = movement_of(smoothed.speeds, rate, settings.filter, calibration)
     chosen = np.asarray(np.isfinite(smooth[:, 0, 0]) & calibration)
     frames = np.flatnonzero(chosen)
     if 0 < len(frames) < len(rotations):
@@ -105,9 +129,20 @@ def view_joint(
         if b > a
     )
     samples = JointSamples(
-        smooth, smooth @ long_axis, phases, rate, long_axis, frames, rotations[frames]
+        smooth, carried(smooth, long_axis), phases, rate, long_axis, frames, rotations[frames]
     )
-    return JointView(name, rotations, long_axis, twist_known, samples, movement, chosen, human)
+    return JointView(
+        name,
+        rotations,
+        long_axis,
+        twist_known,
+        samples,
+        movement,
+        chosen,
+        smoothed,
+        human,
+        neighbours,
+    )
 
 
 def view_halves(view: JointView, settings: ParameterizationSettings) -> tuple[JointView, JointView]:
@@ -126,6 +161,8 @@ def view_halves(view: JointView, settings: ParameterizationSettings) -> tuple[Jo
             half,
             settings,
             view.human,
+            view.smoothed,
+            view.neighbours,
         )
         for half in (early, late)
     )

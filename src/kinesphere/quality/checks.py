@@ -101,8 +101,10 @@ def _unit(recording: Recording) -> Iterator[Finding]:
             )
     if heights:
         return
-    points = recording.markers[recording.seen.any(axis=1)]
-    across = float(np.linalg.norm(np.median(np.nanmax(points, 1) - np.nanmin(points, 1), axis=0)))
+    # marker by marker in memory: extremes of rows come in a tenth of the time
+    points = np.moveaxis(recording.markers[recording.seen.any(axis=1)], 1, 0).copy()
+    extent = np.fmax.reduce(points) - np.fmin.reduce(points)
+    across = float(np.linalg.norm(np.median(extent, axis=0)))
     low, high = SCENE
     if recording.n_markers > 1 and not low <= across <= high:
         yield Finding(

@@ -130,7 +130,8 @@ def check_jumps(recording: Recording) -> Iterator[Finding]:
         if len(at) < 2:
             continue
         lasts = np.diff(at) / recording.rate
-        steps = lengths(np.diff(recording.markers[at, c], axis=0))
+        points = np.ascontiguousarray(recording.markers[:, c])
+        steps = lengths(np.diff(points if len(at) == len(points) else points[at], axis=0))
         speeds: Array = np.where(lasts <= LONGEST_STEP, steps / lasts, 0.0)
         fast = np.flatnonzero(speeds > FASTEST)
         if len(fast) == 0:

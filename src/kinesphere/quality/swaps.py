@@ -52,7 +52,8 @@ def _sudden_steps(recording: Recording, labelled: list[int]) -> Iterator[tuple[i
     """Return the frames into which two markers or more step suddenly, and which of them do."""
     for start in range(0, recording.n_frames - 1, BLOCK):
         first = max(start - 1, 0)  # blocks overlap: a step is seen with those around it
-        points = recording.markers[first : start + BLOCK + 2, labelled]
+        points = recording.markers[first : start + BLOCK + 2]
+        points = points if labelled == list(range(points.shape[1])) else points[:, labelled]
         steps = lengths(np.diff(points, axis=0))
         around = np.pad(steps, ((1, 1), (0, 0)), constant_values=np.nan)
         sudden = (steps > FAR) & (steps > SUDDEN * np.fmin(around[:-2], around[2:]))

@@ -5,6 +5,7 @@ import numpy as np
 from kinesphere.data import Array, Joint, Limb, Observability, PoseFlag
 from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.range_of_motion import RANGE_SAMPLE, range_of_motion
+from kinesphere.geometry.vectors import lengths
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import unit
 from kinesphere.skeleton.measured import MeasuredJoint
@@ -23,7 +24,7 @@ def describe_joint(
     """Return the joint with its residual, range of motion, covariance and observability."""
     fit, model = measured.fit, measured.model
     assert body.centre is not None
-    gap = np.linalg.norm(parent.carry(fit.centre) - child.carry(body.centre), axis=1)
+    gap = lengths(parent.carry(fit.centre) - child.carry(body.centre))
     known = gap[np.isfinite(gap)]
     moved = range_of_motion(_relative(parent, child))
     verdict, note = verdict_on(measured, moved, settings)

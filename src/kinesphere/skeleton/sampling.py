@@ -83,10 +83,12 @@ def spread_over_joints(
     looked_at = even_frames(n_frames, DENSE * count)
     few = markers if len(looked_at) == n_frames else markers[looked_at]
     steps = np.zeros(len(few))
+    used = sorted({column for joint in joints for limb in joint for column in limb})
+    apart = {column: np.ascontiguousarray(few[:, column]) for column in used}
     for one, other in joints:
         ways = np.zeros(len(few))
         for a, b in product(one, other):
-            off = few[:, a] - few[:, b]
+            off = apart[a] - apart[b]
             step = np.abs(np.diff(np.sqrt(np.einsum("ni,ni->n", off, off))))
             ways[1:] += np.minimum(np.where(np.isfinite(step), step, 0.0), JUMP)
         steps += ways / max(float(ways.sum()), TINY)

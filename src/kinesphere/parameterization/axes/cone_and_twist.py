@@ -5,11 +5,11 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array
 from kinesphere.geometry.even_frames import every_nth
-from kinesphere.geometry.rotations import mean_rotation
+from kinesphere.geometry.rotations import mean_rotation, quaternions_from_rotations
+from kinesphere.parameterization.axes.cone_kernels import errors_about
 from kinesphere.parameterization.axes.stratify import turning_weights
 from kinesphere.parameterization.samples import JointSamples, Phase
 
@@ -61,7 +61,7 @@ class ConeAndTwist:
         counts = [len(part) for part in parts]
         means = [mean_rotation(part) for part in parts]
         turns = [part @ mean.T for part, mean in zip(parts, means, strict=True)]
-        q = Rotation.from_matrix(np.concatenate(turns)).as_quat()
+        q = quaternions_from_rotations(np.concatenate(turns))
         return cls(
             positions=np.concatenate(parts) @ samples.long_axis,
             means=np.repeat([mean @ samples.long_axis for mean in means], counts, axis=0),
@@ -73,10 +73,16 @@ class ConeAndTwist:
         )
 
     @cached_property
-    def _parts(self) -> tuple[Array, ...]:
-        """What an axis is multiplied with, arrays (n, 3), and two products that it is not."""
+    def vectors_beside(self) -> Array:
+        """(5, 3, n) what axes are multiplied with, as the kernels take it."""
         p, r, v = self.positions, self.means, self.vectors
-        return np.cross(r, p), np.cross(p, v), (p * r).sum(axis=1), (p * v).sum(axis=1)
+        return np.stack([p.T, r.T, v.T, np.cross(r, p).T, np.cross(p, v).T])
+
+    @cached_property
+    def numbers_beside(self) -> Array:
+        """(3, n) what they are not multiplied with."""
+        p, r, v = self.positions, self.means, self.vectors
+        return np.stack([self.scalars, (p * r).sum(axis=1), (p * v).sum(axis=1)])
 
     def errors(self, axes: Array) -> tuple[Array, Array]:
         """Return colatitude and twist of every frame about each axis, (k, 3) → (k, n) rad twice.
@@ -84,26 +90,8 @@ class ConeAndTwist:
         With ``D = R(p, τ) R(a, θ)`` the turn from the mean rotation, θ the azimuth from mean to
         present direction p, the twist is that of the quaternion product ``D · R(a, −θ)`` about p.
         """
-        p_a, r_a = axes @ self.positions.T, axes @ self.means.T
-        across, crossed, along, turned = self._parts
-        colatitude = np.arctan2(np.sqrt(np.maximum(0.0, 1 - p_a**2)), p_a)
-        half = np.arctan2(axes @ across.T, along - r_a * p_a) / 2
-        s, c = np.sin(half), np.cos(half)
-        sine = c * turned - s * (self.scalars * p_a + axes @ crossed.T)
-        cosine = c * self.scalars + s * (axes @ self.vectors.T)
-        sine = np.where(cosine < 0, -sine, sine)  # both quaternions of a rotation mean the same
-        return colatitude, 2 * np.arctan2(sine, np.abs(cosine))
-
-    def azimuths(self, axis: Array) -> Array:
-        """Return the angle from mean to present direction about an axis, (3,) → (n,) rad."""
-        across, _, along, _ = self._parts
-        level = (self.means @ axis) * (self.positions @ axis)
-        return np.asarray(np.arctan2(across @ axis, along - level))
-
-    def centred(self, values: Array, weights: Array) -> Array:
-        """Return values, (n,), less their weighted mean in each phase."""
-        sums = np.bincount(self.phase, weights * values)
-        return np.asarray(values - (sums / np.bincount(self.phase, weights))[self.phase])
+        found = [errors_about(axis, self.vectors_beside, self.numbers_beside) for axis in axes]
+        return np.stack([one[0] for one in found]), np.stack([one[1] for one in found])
 
 
 def _turning(rotations: Array, cell: float) -> Array:

@@ -5,7 +5,7 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.parameterization.axes.cone_and_twist import ConeAndTwist
 from kinesphere.parameterization.axes.fit import moving_positions, plane_normal
-from kinesphere.parameterization.axes.likeliest import Cone, likeliest_axis
+from kinesphere.parameterization.axes.likeliest import Cone, Likeliest, likeliest_axis
 from kinesphere.parameterization.samples import JointSamples
 
 MOST_FRAMES = 400  # more change the axis by less than its uncertainty
@@ -63,10 +63,15 @@ def other_reading(samples: JointSamples, axis: Array) -> float:
     """
     errors = _errors(samples, MOST_FRAMES)
     other = likeliest_axis(errors, axis, ROUNDS[1], USUAL_CONE, FREEDOM, USUAL_COUPLING)
+    return off_by_probability(other, axis, USUAL_COUPLING)
+
+
+def off_by_probability(other: Likeliest, axis: Array, usual: float) -> float:
+    """Return how far an axis is off one with a coupling of ``usual`` size, rms by probability."""
     if not other.deviation > 0:
         return 0.0
     against = np.exp(-((other.coupling / other.deviation) ** 2) / 2)
-    probability = 1 / (1 + USUAL_COUPLING / other.deviation * against)
+    probability = 1 / (1 + usual / other.deviation * against)
     apart = np.arctan2(np.linalg.norm(np.cross(other.axis, axis)), abs(other.axis @ axis))
     return float(np.sqrt(probability) * apart)
 

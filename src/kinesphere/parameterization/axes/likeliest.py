@@ -6,16 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.data import Array
-from kinesphere.geometry.rotations import tangent_basis
 from kinesphere.parameterization.axes.cone_and_twist import ConeAndTwist
+from kinesphere.parameterization.axes.cone_kernels import equations
 
-FLOOR = float(np.deg2rad(1e-4))  # a spread below this is rounding, not noise
-STEP = 1e-5  # rad, of the numerical derivative
 LARGEST_STEP = 0.2  # rad, of one iteration
 SETTLED = 1e-6  # rad
 FREEDOM = 10.0  # of the t distribution that errors are taken from: its tails forgive bad frames,
 # and the sway about other axes, which is no outlier, still counts
-NORMAL_MAD = 1.4826
 TINY = 1e-9
 
 
@@ -72,59 +69,40 @@ def likeliest_axis(
     """
     axis = start / np.linalg.norm(start)
     share = errors.effective / len(errors.positions)
-    n = len(errors.positions)
-    of_cone, of_twist = errors.weights, errors.weights
-    opening = np.nan
+    scaled = np.stack([errors.weights, errors.weights])
     cost = np.inf
     coupled = deviation = 0.0
     n_columns = 4 if coupling else 3
     for _ in range(rounds):
-        basis = tangent_basis(axis)
-        near = np.vstack([axis, axis + STEP * basis])
-        near /= np.linalg.norm(near, axis=1)[:, None]
-        colatitudes, twists = errors.errors(near)
-        colatitude = colatitudes[0]
-        tilted = list((colatitudes[1:] - colatitude) / STEP)
-        twisted = list((twists[1:] - twists[0]) / STEP)
-        twist = twists[0]
-        if coupling:
-            azimuth = errors.azimuths(axis)
-            twist = twist - coupled * azimuth
-            twisted.append(-azimuth)
-        if cone is not None:
-            opening = _median(colatitude, errors.weights)
-            out = colatitude - opening
-        else:
-            out = errors.centred(colatitude, of_cone)
-        turned = errors.centred(twist, of_twist)
-        spreads = _spread(out, errors.weights), _spread(turned, errors.weights)
-        of_cone = errors.weights * _weights(out, spreads[0], freedom)
-        of_twist = errors.weights * _weights(turned, spreads[1], freedom)
-        scales = np.sqrt(share * of_cone) / spreads[0], np.sqrt(share * of_twist) / spreads[1]
-        if cone is None:
-            out = errors.centred(colatitude, of_cone)
-            tilted = [errors.centred(column, of_cone) for column in tilted]
-        turned = errors.centred(twist, of_twist)
-        twisted = [errors.centred(column, of_twist) for column in twisted]
-        # columns: two ways to tilt the axis, the opening of the cone, the coupling
-        rows, values = np.zeros((2 * n + n_columns - 2, n_columns)), np.zeros(2 * n + n_columns - 2)
-        rows[:n, :2] = np.stack(tilted, axis=1) * scales[0][:, None]
-        rows[n : 2 * n, [0, 1, 3][: len(twisted)]] = np.stack(twisted, axis=1) * scales[1][:, None]
-        values[:n], values[n : 2 * n] = out * scales[0], turned * scales[1]
-        known = slice(2 * n, None)
-        rows[2 * n, 2] = 1.0
-        if cone is not None:
-            rows[:n, 2] = -scales[0]
-            rows[2 * n, 2] = 1 / cone.deviation
-            values[2 * n] = (opening - cone.usual) / cone.deviation
-        if coupling:
-            rows[-1, 3], values[-1] = 1 / coupling, coupled / coupling
-        cost = errors.effective * float(np.log(spreads).sum()) + 0.5 * float(
-            values[known] @ values[known]
+        basis, columns, values, spreads, opening = equations(
+            axis,
+            errors.vectors_beside,
+            errors.numbers_beside,
+            errors.phase,
+            errors.weights,
+            scaled,
+            share,
+            freedom,
+            cone is not None,
+            coupled,
         )
-        normal = rows.T @ rows
+        normal = (columns @ columns.T)[:n_columns, :n_columns]
+        right = (columns @ values)[:n_columns]
+        # what is known without any frame
+        known = 0.0
+        if cone is None:
+            normal[2, 2] += 1.0
+        else:
+            normal[2, 2] += 1 / cone.deviation**2
+            right[2] += (opening - cone.usual) / cone.deviation**2
+            known += ((opening - cone.usual) / cone.deviation) ** 2
+        if coupling:
+            normal[3, 3] += 1 / coupling**2
+            right[3] += coupled / coupling**2
+            known += (coupled / coupling) ** 2
+        cost = errors.effective * float(np.log(spreads).sum()) + 0.5 * known
         # phases of a frame or two leave directions open: those stay as they are
-        step = -np.linalg.lstsq(normal, rows.T @ values, TINY)[0]
+        step = -np.linalg.lstsq(normal, right, TINY)[0]
         if coupling:
             coupled += float(step[3])
             deviation = float(np.sqrt(np.linalg.pinv(normal, hermitian=True)[3, 3]))
@@ -137,22 +115,3 @@ def likeliest_axis(
         if size < SETTLED:
             break
     return Likeliest(np.asarray(axis), cost, coupled, deviation)
-
-
-def _spread(errors: Array, weights: Array) -> float:
-    return max(NORMAL_MAD * _median(np.abs(errors), weights), FLOOR)
-
-
-def _median(values: Array, weights: Array) -> float:
-    """Return the value with half of the weight on either side."""
-    order = np.argsort(values, kind="stable")
-    before = np.cumsum(weights[order])
-    half = before[-1] / 2
-    low = int(np.searchsorted(before, half * (1 - 1e-12)))
-    high = int(np.searchsorted(before, half * (1 + 1e-12)))
-    return float(values[order[low]] + values[order[min(high, len(values) - 1)]]) / 2
-
-
-def _weights(errors: Array, spread: float, freedom: float) -> Array:
-    """Return weights of a t distribution, (n,): 1 near the middle, less in the tails."""
-    return np.asarray((freedom + 1) / (freedom + (errors / spread) ** 2))

@@ -1,6 +1,6 @@
 """Two axes from free motion, by the spectra of the angles about them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -30,6 +30,7 @@ SMALLEST = 1e-8  # rad², usual variance of a wave
 LARGEST_STEP = 0.15  # rad, of an axis in one round
 SETTLED = 2e-4  # rad
 ROUNDS = (12, 80)  # at least, at most
+SPREAD_ROUNDS = 30  # after which spreads change by a hundredth
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +47,8 @@ class _Belief:
     """rad, by which the axes have just moved."""
     cost: float = np.inf
     """Negative logarithm of the evidence before that, less a constant."""
+    spread: Array = field(default_factory=lambda: np.full((4, 4), np.inf))
+    """(4, 4) rad², covariance of the axes in their tangent planes, waves' sizes given."""
 
 
 def sparsest_axes(motion: FreeMotion, start: Array) -> AxesFit:
@@ -71,10 +74,7 @@ def sparsest_axes(motion: FreeMotion, start: Array) -> AxesFit:
     AxesFit
         Its cost compares with that of `likeliest_axes` on the same frames.
     """
-    stretches, frequencies = _stretches(motion, start)
-    near = np.exp(-0.5 * ((frequencies[:, None] - frequencies) / SMOOTH) ** 2)
-    near /= near.sum(axis=1, keepdims=True)
-    belief = _Belief(start, FIRST_ERROR, stretches[0].sizes.copy())
+    stretches, near, belief = _begun(motion, start)
     settled = 0
     for k in range(ROUNDS[1]):
         belief = _round(motion, stretches, belief, near)
@@ -82,6 +82,36 @@ def sparsest_axes(motion: FreeMotion, start: Array) -> AxesFit:
         if k + 1 >= ROUNDS[0] and settled > 2:
             break
     return AxesFit(belief.axes, belief.cost)
+
+
+def spread_of_axes(motion: FreeMotion, axes: Array) -> Array:
+    """Return the standard deviations of two axes, (2,) rad, the angles' waves being uncertain.
+
+    The waves are fitted about the axes as they are; the sizes they then have let every angle take
+    up what a tilt of an axis leaves. Where the angles share a rhythm nearly all of it can be taken
+    up, and the spread is large, however alike axes from parts of the motion are. Sizes count as
+    known and the angles as independent, so errors are larger.
+
+    Parameters
+    ----------
+    motion
+        Thinned.
+    axes : (2, 3)
+        As in `sparsest_axes`.
+    """
+    stretches, near, belief = _begun(motion, axes)
+    for _ in range(SPREAD_ROUNDS):
+        belief = replace(_round(motion, stretches, belief, near), axes=axes)
+    variances = np.diag(belief.spread)
+    return np.asarray(np.sqrt(variances.reshape(2, 2).sum(axis=1)))
+
+
+def _begun(motion: FreeMotion, axes: Array) -> tuple[list[Stretch], Array, _Belief]:
+    """Return stretches, how near frequencies are to each other, (n_waves, n_waves), and a start."""
+    stretches, frequencies = _stretches(motion, axes)
+    near = np.exp(-0.5 * ((frequencies[:, None] - frequencies) / SMOOTH) ** 2)
+    near /= near.sum(axis=1, keepdims=True)
+    return stretches, near, _Belief(axes, FIRST_ERROR, stretches[0].sizes.copy())
 
 
 def _stretches(motion: FreeMotion, axes: Array) -> tuple[list[Stretch], Array]:
@@ -154,6 +184,7 @@ def _round(motion: FreeMotion, stretches: list[Stretch], belief: _Belief, near: 
         usual=_spectra(stretches, squares, belief.usual, near),
         step=step,
         cost=float(cost),
+        spread=np.asarray(spread[3:, 3:], dtype=np.float64),
     )
 
 

@@ -59,17 +59,24 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
     axes = [np.stack([reference @ fit[1], fit[0]]) for fit in ends if fit is not None]
     if not axes:
         return np.empty((0, 3))
-    if not settings.refine or len(moving) < SHORTEST * samples.rate:
+    if not settings.refine or len(moving) < SHORTEST / 2 * samples.rate:  # halves are shorter
         return axes[0]
-    at = moving if samples.frames is None else samples.frames[moving]
-    # smoothing would hide from the likelihood what the errors of the poses are like
-    measured = samples.rotations if samples.measured is None else samples.measured
-    motion = FreeMotion(measured[moving], at / samples.rate, samples.long_axis, reference)
+    motion = free_motion_of(samples)
     smooth = likeliest_axes(motion, axes)
     fits = [smooth, sparsest_axes(motion.thinned(), smooth.axes)]
     if fits[1].cost < smooth.cost:  # rhythms, or the first descent was caught in gimbal lock
         fits.append(likeliest_axes(motion, [fits[1].axes]))
     return min(fits, key=lambda fit: fit.cost).axes
+
+
+def free_motion_of(samples: JointSamples) -> FreeMotion:
+    """Return the moving frames of a joint as its likelihood takes them: before any smoothing."""
+    moving = np.concatenate([np.arange(a, b) for a, b in samples.phases])
+    at = moving if samples.frames is None else samples.frames[moving]
+    # smoothing would hide from the likelihood what the errors of the poses are like
+    measured = samples.rotations if samples.measured is None else samples.measured
+    reference = reference_rotation(samples)
+    return FreeMotion(measured[moving], at / samples.rate, samples.long_axis, reference)
 
 
 def _distinct(fits: list[Fit]) -> list[Fit]:
