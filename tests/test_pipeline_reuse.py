@@ -138,7 +138,10 @@ def test_axes_are_turned_by_the_markers_not_by_the_default_position(performance)
     # markers that were put on anew say nothing; then frames of one name are the same
     anew = replace(tilted, markers=tuple(f"new{m}" for m in tilted.markers))
     proximal = replace(proximal, limbs=(anew, *plain.limbs[1:]))
-    found = best(plain, distal, proximal)[0].joint("left_hip")
+    bearing, _ = best(plain, distal, proximal)
+    why = {root.name: "no markers in both"}
+    assert bearing.history[-1].findings["frames_by_name"] == {"b": why}
+    found = bearing.joint("left_hip")
     assert_allclose(found.axes[1], seen.axes[1], atol=1e-12)
     assert found.axes_uncertainty[1] == pytest.approx(np.deg2rad(5.0))  # 3 and 4 between frames
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.accuracy.one_movement import Array
+from benchmarks.accuracy.reused_real import reused_knees
 from kinesphere.data import Joint, Recording, Solution
 from kinesphere.io import read
 from kinesphere.parameterization import n_told
@@ -62,6 +63,8 @@ def functional(folder: Path) -> list[str]:
         f"{rms(apart):.1f}° apart (rms) where frames of one name are taken for the same, "
         f"{rms(turned):.1f}° where one is turned into the other's by the parent's markers; "
         f"{beyond[0]} and {beyond[1]} of them by more than 10° and more than they are uncertain.",
+        "",
+        *reused_knees(alone),
     ]
 
 

@@ -12,21 +12,21 @@ from kinesphere.synthetic import Performance
 
 Array = NDArray[np.float64]
 
-DISTAL, PROXIMAL, NONE = 0, 1, 2
-"""Which axis joints move about; none of those that move a limb."""
+DISTAL, PROXIMAL, NONE, ALL = 0, 1, 2, -1
+"""Which axis joints move about; none of those that move a limb, or one after another."""
 NOISE_M, MEMORY_S = 1e-3, 0.4
 _TWICE = ("root_positions", "root_rotations", "twists", "residuals", "flags", "moving")
 
 
 def one_movement(performance: Performance, about: int, scatter_deg: float, seed: int) -> Recording:
-    """Return a recording in which every joint moves about one axis, twice, under correlated noise.
+    """Return a recording in which every joint moves about one axis, twice, in correlated noise.
 
     Parameters
     ----------
     performance
         A calibration of all joints.
     about
-        ``DISTAL``, ``PROXIMAL`` or ``NONE``.
+        ``DISTAL``, ``PROXIMAL``, ``NONE`` or ``ALL``.
     scatter_deg
         Standard deviation of every joint's angles in the posture all of it starts from: people
         stand differently from trial to trial.
@@ -36,7 +36,7 @@ def one_movement(performance: Performance, about: int, scatter_deg: float, seed:
     rng = np.random.default_rng(seed)
     told = performance.parameters
     angles = np.array(told.angles)
-    for k in {0, 1, 2} - {about}:
+    for k in {0, 1, 2} - {about} if about != ALL else ():
         angles[..., k] *= 0.0  # NaN, an axis that is not there, stays
     angles += np.deg2rad(scatter_deg) * rng.normal(size=angles.shape[1:])
     twice = {name: np.concatenate([getattr(told, name)] * 2) for name in _TWICE}

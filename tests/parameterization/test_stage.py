@@ -20,6 +20,7 @@ from kinesphere.parameterization import (
     TwistSettings,
     parameterize,
 )
+from kinesphere.parameterization.reused import not_reused
 from kinesphere.synthetic import make_performance
 
 AXIS = 0.5  # deg, noise-free: what 0.2 deg of sway about the other axes leaves
@@ -405,8 +406,23 @@ def test_axes_of_a_stranger_with_other_joints_are_no_help(performance):
     motion = only(performance.motion, ["trunk", "left_thigh"])
     stranger = only(performance.motion, ["trunk", "right_thigh"]).skeleton
     solved = parameterize(motion, reuse=stranger)
-    assert "measured no axes of left_hip" in solved.history[-1].warnings[-1]
+    assert "no recording to be reused measured axes of left_hip" in solved.history[-1].warnings[-1]
     assert solved.skeleton.joints[0].axes_source == "movement"
+
+
+def test_it_is_told_what_nobody_measured_and_what_is_known_better_here(performance):
+    skeleton = performance.skeleton
+    measured = replace(skeleton.joint("left_hip"), axes_source="movement")
+    assumed = replace(skeleton.joint("left_knee"), axes_source="body")
+    reuse = Skeleton(
+        skeleton.limbs,
+        tuple({"left_hip": measured, "left_knee": assumed}.get(j.name, j) for j in skeleton.joints),
+    )
+    assert not_reused(["left_hip", "left_knee", "tail"], reuse) == (
+        "no recording to be reused measured axes of left_knee, tail; theirs are from here",
+        "more axes of left_hip are told here than to be reused; they are from here",
+    )
+    assert not_reused([], reuse) == not_reused(["left_hip"], None) == ()
 
 
 def test_a_body_without_joints_has_no_parameters_but_a_root(performance):
@@ -447,7 +463,10 @@ def test_axes_that_were_only_assumed_are_not_reused(performance):
     solved = parameterize(performance.motion, reuse=reuse)
     assert solved.skeleton.joint("left_knee").axes_source == "movement"
     assert solved.skeleton.joint("right_knee").axes_source == "reused"
-    assert any("measured no axes of left_knee" in w for w in solved.history[-1].warnings)
+    assert any(
+        "no recording to be reused measured axes of left_knee" in w
+        for w in solved.history[-1].warnings
+    )
 
 
 def test_doubts_about_reused_axes_stay_doubts(performance, solved):

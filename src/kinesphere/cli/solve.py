@@ -48,9 +48,10 @@ def solve(
         typer.Option(
             "--calibration-from",
             metavar="DIR",
-            help="Take axes and rest positions from a solved recording of the same person. Given "
-            "several times (a functional trial for each joint or axis), in any order, every axis "
-            "comes from where it is known best, and contradictions are told.",
+            help="Take axes and rest positions from a solved recording of the same person, as they "
+            "lie beside the markers. Given several times (a functional trial for each joint or "
+            "axis), in any order, every axis comes from where it is known best, and contradictions "
+            "are told.",
         ),
     ] = None,
     facing: Annotated[

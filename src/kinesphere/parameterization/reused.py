@@ -1,6 +1,6 @@
 """Axes from another recording: what was doubted of them there, and whether they fit here."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -106,6 +106,22 @@ def _with_own(
             share, _ = reach_and_twist(view, both.axes, both.rest, settings)
             return None if share > OUT_OF_REACH else both
     return None
+
+
+def not_reused(own: Sequence[str], reuse: Skeleton | None) -> tuple[str, ...]:
+    """Return of which joints that have their own axes nothing is told to be reused, or less."""
+    if reuse is None:
+        return ()
+    less = [name for name in own if reused_fit(name, reuse) is not None]
+    none = [name for name in own if name not in less]
+    warnings = []
+    if none:
+        named = ", ".join(none)
+        warnings.append(f"no recording to be reused measured axes of {named}; theirs are from here")
+    if less:
+        named = ", ".join(less)
+        warnings.append(f"more axes of {named} are told here than to be reused; they are from here")
+    return tuple(warnings)
 
 
 def told_of(name: str, skeleton: Skeleton) -> Mapping[str, Json]:

@@ -35,7 +35,7 @@ from kinesphere.parameterization.report import (
     stage_warnings,
     told,
 )
-from kinesphere.parameterization.reused import misfit, own_or_reused
+from kinesphere.parameterization.reused import misfit, not_reused, own_or_reused
 from kinesphere.parameterization.settings import (
     ParameterizationSettings,
 )
@@ -147,10 +147,7 @@ def parameterize(
     warnings = stage_warnings(seen, fits, settings.axes.method)
     warnings += reach_warnings(fits, findings, settings.angles.unreachable)
     own = [name for name, fit in fits.items() if fit.source != "reused"]
-    if reuse is not None and own:
-        warnings += (
-            f"the solution to be reused measured no axes of {', '.join(own)}; theirs are from here",
-        )
+    warnings += not_reused(own, reuse)
     if (
         reuse is not None
         and len(own) < len(fits)

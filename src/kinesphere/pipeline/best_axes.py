@@ -11,8 +11,9 @@ from kinesphere.data import Joint, Json, Skeleton, Step
 from kinesphere.parameterization import AxesSettings
 from kinesphere.parameterization.anatomy import wanted_n_axes
 from kinesphere.parameterization.joined import counterpart, doubted, joined, told_axes
-from kinesphere.parameterization.joint_fit import JointFit
+from kinesphere.parameterization.joint_fit import JointFit, or_null
 from kinesphere.parameterization.reused import reused_fit
+from kinesphere.pipeline.carried_over import as_json, into_frames_of
 from kinesphere.pipeline.frames_apart import Turn, turn_between
 
 CONTRADICTION = np.deg2rad(10.0)
@@ -46,9 +47,10 @@ def with_best_axes(
     Laboratories record a functional trial for each joint, or for each of its axes. Of all that is
     told of a joint, that serves which tells most of its axes, then what is doubted of fewest, then
     the one with the smallest largest uncertainty; that may be one axis of this recording and one
-    of that, turned into the frames of the first by the markers on the parent. What twist that goes
-    with a hinge's angle makes unsure does not count: it is the same in every recording, and a long
-    movement only shows it. In which order recordings are given does not matter.
+    of that, turned into the frames of the first by the markers on the parent. So is what serves,
+    with its rest orientation, into the frames of this skeleton. What twist that goes with a hinge's
+    angle makes unsure does not count: it is the same in every recording, and a long movement only
+    shows it. In which order recordings are given does not matter.
 
     Parameters
     ----------
@@ -63,7 +65,9 @@ def with_best_axes(
     -------
     skeleton
         Joints that nobody measured have no axes; others say where each is from
-        (``axes_reused_from``). The last step of its history says what was found of them there.
+        (``axes_reused_from``). The last step of its history says what was found of them there, and
+        of which limbs the markers do not tell how the frames lie (``frames_by_name``: recording →
+        limb → why).
     contradictions
         For each joint whose axes recordings put farther apart than they are uncertain, and than
         10°, a clause.
@@ -72,6 +76,7 @@ def with_best_axes(
     sources = sorted(sources, key=lambda source: source.name)
     joints, said = [], []
     found: dict[str, Json] = {}
+    named: dict[str, dict[str, str]] = {}
     for joint in skeleton.joints:
         told = [one for source in sources if (one := _told(joint.name, source)) is not None]
         if not told:
@@ -79,11 +84,17 @@ def with_best_axes(
             continue
         several = (*told, *_mixed(joint.name, told, settings))
         best = min(several, key=lambda one: _order(one, joint.name))
-        joints.append(_bearing(joint, best))
-        found[joint.name] = dict(best.fit.findings)
+        bearing, by_name = into_frames_of(skeleton, _bearing(joint, best), best.base.skeleton)
+        joints.append(bearing)
+        for source, limbs in ((best.base.name, by_name), *_named_donors(joint, best, told)):
+            if limbs:
+                named.setdefault(source, {}).update(limbs)
+        known = bearing.axes_uncertainty
+        unsure = [] if known is None else or_null(np.rad2deg(known))
+        found[joint.name] = {**best.fit.findings, "axes_uncertainty_deg": unsure}
         if clauses := list(_contradictions(joint.name, best, told)):
             said.append(f"{joint.name} ({'; '.join(clauses)})")
-    step = Step("parameterization", findings={"joints": found})
+    step = Step("parameterization", findings={"joints": found, "frames_by_name": as_json(named)})
     history = (*skeleton.history, step)
     return replace(skeleton, joints=tuple(joints), history=history), tuple(said)
 
@@ -127,10 +138,20 @@ def _mixed(name: str, told: Sequence[_Told], settings: AxesSettings) -> Iterator
         for given in told_axes(other.fit, name):
             known = np.isfinite(other.fit.uncertainty[given])
             if known and counterpart(other.fit, given, base, name) == PROXIMAL:
-                turn = _turn(name, one.base, other.base)
-                both = joined(base, other.fit, PROXIMAL, given, closest, *turn)
+                turn, unsure, _ = _turn(name, one.base, other.base)
+                both = joined(base, other.fit, PROXIMAL, given, closest, turn, unsure)
                 if both is not None:
                     yield _Told(both, one.base, one.again or other.again)
+
+
+def _named_donors(
+    joint: Joint, best: _Told, told: Sequence[_Told]
+) -> Iterator[tuple[str, dict[str, str]]]:
+    """Yield recordings that gave an axis by the name of the parent's frame, and why."""
+    for other in told:
+        if other.base.name in best.fit.reused_from and other.base.name != best.base.name:
+            why = _turn(joint.name, best.base, other.base).why_named
+            yield other.base.name, {joint.parent: why} if why else {}
 
 
 def _order(told: _Told, name: str) -> tuple[object, ...]:
@@ -157,7 +178,7 @@ def _contradictions(name: str, best: _Told, told: Sequence[_Told]) -> Iterator[s
         for other in told:
             if other.base.name == source:
                 continue
-            turn, unsure = _turn(name, best.base, other.base)
+            turn, unsure, _ = _turn(name, best.base, other.base)
             for j in told_axes(other.fit, name):
                 if counterpart(other.fit, j, fit, name) != k:
                     continue

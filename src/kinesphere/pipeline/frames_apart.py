@@ -19,35 +19,43 @@ class Turn(NamedTuple):
     """(3, 3)"""
     unsure: float
     """rad, standard deviation."""
+    why_named: str = ""
+    """Why frames of one name are taken for the same, a clause; empty where the markers tell."""
 
 
 def turn_between(limb: Limb, other: Limb) -> Turn:
     """Return the rotation from the other's frame into the limb's, by the markers on both.
 
     Skin, or markers that were put on anew, show in how badly they fit: where that leaves more open
-    than the two default positions do, or where the limbs share no three markers, frames with one
-    name are taken for the same.
+    than the two default positions do, or where the limbs share no three markers that are off a
+    line, frames with one name are taken for the same.
+
+    The turn is as unsure as the rotation about the markers' longest line. Of limbs whose markers
+    were put on 10 mm anew 1 in 10 is turned by three or four of them (6 and 4° off, median), 19 in
+    20 by six (3° off); at 20 mm 1 in 50 and 1 in 11.
     """
-    plain = Turn(np.eye(3), FRAMES)
     shared = [m for m in limb.markers if m in other.markers]
-    if len(shared) < 3:
-        return plain
     here, there = (
-        np.array([one.marker_positions[one.markers.index(m)] for m in shared])
+        np.array([one.marker_positions[one.markers.index(m)] for m in shared]).reshape(-1, 3)
         for one in (limb, other)
     )
     known = np.isfinite(here).all(axis=1) & np.isfinite(there).all(axis=1)
     here, there = here[known], there[known]
     n = len(here)
+    if n > 1 and np.array_equal(here, there):
+        return Turn(np.eye(3), 0.0)  # one solution stays as it is, to the last digit
     if n < 3:
-        return plain
+        return _named("fewer than three markers in both" if n else "no markers in both")
     fit = fit_rigid(there, here[None])
     if not fit.fitted[0]:
-        return plain
+        return _named("markers on a line")
     rotation = np.asarray(fit.rotations[0])
     left = here - there @ rotation.T - fit.shifts[0]
-    freedom = 3 * n - 6
-    noise = np.sqrt((left**2).sum() / freedom)  # m, of one coordinate of one marker
+    noise = np.sqrt((left**2).sum() / (3 * n - 6))  # m, of one coordinate of one marker
     spread = np.linalg.svd(here - here.mean(axis=0), compute_uv=False)[1]  # across the longest line
     unsure = float(noise / spread)
-    return Turn(rotation, unsure) if unsure < FRAMES else plain
+    return Turn(rotation, unsure) if unsure < FRAMES else _named("markers lie otherwise")
+
+
+def _named(why: str) -> Turn:
+    return Turn(np.eye(3), FRAMES, why)

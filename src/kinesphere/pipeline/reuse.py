@@ -10,6 +10,7 @@ from kinesphere.data import Json, Motion, Parameters, Skeleton, Solution, Step
 from kinesphere.errors import BadSetting
 from kinesphere.parameterization import ParameterizationSettings, parameterize
 from kinesphere.pipeline.best_axes import Calibrated, with_best_axes
+from kinesphere.pipeline.carried_over import named_frames
 from kinesphere.pipeline.doubts import calibration_doubts
 
 Source: TypeAlias = Solution | Skeleton
@@ -85,6 +86,13 @@ def parameterized(
             "recordings": [*sorted(other.name for other in others)],
             "axes_from": {j.name: _origins(j.axes_reused_from) for j in reuse.joints if j.n_axes},
         }
+        found["frames_by_name"] = by_name = reuse.history[-1].findings["frames_by_name"]
+        if named := named_frames(by_name):
+            doubts += (
+                "where markers do not tell how a limb's frame lies in the recording to be reused, "
+                "frames of one name were taken for the same, which they are to some degrees: "
+                f"{named}",
+            )
         if apart:
             doubts += (
                 "recordings contradict each other about these axes by more than 10° and more than "
