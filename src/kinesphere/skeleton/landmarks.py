@@ -4,6 +4,7 @@ import numpy as np
 
 from kinesphere.data import Array, JointModel, Landmark
 from kinesphere.geometry.rigid import into_frame
+from kinesphere.skeleton.anatomy import in_plane
 from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import beside
@@ -69,9 +70,12 @@ def _few(parent: Body, child_labels: tuple[str, ...]) -> bool:
 def _landmark(
     landmark: Landmark, joint: JointModel, parent: Body, sample: dict[str, Array]
 ) -> tuple[Array, float] | None:
-    needed = {*landmark.weights, *(landmark.scale or ())}
+    needed = {*landmark.weights, *(landmark.scale or ()), *landmark.plane}
     if not needed <= sample.keys():
         return None
+    if landmark.plane:
+        point = in_plane(landmark, parent, sample, _inward_by_name(joint))
+        return None if point is None else (point, landmark.spread)
     world = np.sum([w * sample[label] for label, w in landmark.weights.items()], axis=0)
     local = into_frame(parent.rotations, parent.shifts, world[:, None])[:, 0]
     if not np.isfinite(local).all(axis=1).any():
@@ -99,7 +103,14 @@ def _landmark(
 
 def inward_sign(joint: JointModel, point: Array, parent: Body, right: Array) -> float:
     """Return +1 where the middle of the body lies to the right of a point, −1 to its left."""
+    return _inward_by_name(joint) or (
+        -1.0 if (point - mean_seen(parent.shape)) @ right > 0 else 1.0
+    )
+
+
+def _inward_by_name(joint: JointModel) -> float:
+    """Return +1 on the left, −1 on the right, 0 where the joint's names tell no side."""
     for name in (joint.child, joint.name):
         if name.startswith(("left_", "right_")):
             return 1.0 if name.startswith("left_") else -1.0
-    return -1.0 if (point - mean_seen(parent.shape)) @ right > 0 else 1.0
+    return 0.0
