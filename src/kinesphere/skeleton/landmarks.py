@@ -1,5 +1,7 @@
 """Where a joint centre is expected before the motion has its say."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from kinesphere.data import Array, JointModel, Landmark
@@ -26,9 +28,23 @@ OWN_POSE = 3
 """Markers that give a pose."""
 
 
+class Expected(NamedTuple):
+    """Where a joint centre is expected."""
+
+    centre: Array
+    """(3,) m, in the parent's frame."""
+    spread: float
+    """m, how far off it may be."""
+    source: str
+    """Where it comes from, for a person."""
+    anatomy: bool = False
+    """Whether it is a point of bone whose spread was measured on people: to be weighed with what
+    the motion tells, not only to hold what that leaves open."""
+
+
 def expected_centre(
     joint: JointModel, parent: Body, sample: dict[str, Array], child_labels: tuple[str, ...]
-) -> tuple[Array, float, str]:
+) -> Expected:
     """Return the expected joint centre in the parent's frame.
 
     Parameters
@@ -37,16 +53,10 @@ def expected_centre(
         Label → (n_sample, 3) m, every marker of the recording in the sampled frames.
     child_labels
         The child's own markers.
-
-    Returns
-    -------
-    centre : (3,) m
-    spread : m
-    source : where it comes from, for a person
     """
     for landmark in joint.landmarks:
         if found := _landmark(landmark, joint, parent, sample):
-            return *found, landmark.source or "landmark"
+            return Expected(*found, landmark.source or "landmark", bool(landmark.plane))
     cloud = np.stack([sample[label] for label in child_labels], axis=1)
     child = median_seen(mean_seen(into_frame(parent.rotations, parent.shifts, cloud), axis=1))
     own = np.nan_to_num(mean_seen(parent.shape))
@@ -55,7 +65,7 @@ def expected_centre(
     few = _few(parent, child_labels)
     share = NO_LANDMARK_FIRM if joint.n_axes == 1 or few else NO_LANDMARK_SHARE
     spread = max(share * float(np.linalg.norm(child - own)), 0.02)
-    return (child + own) / 2, spread, BETWEEN
+    return Expected((child + own) / 2, spread, BETWEEN)
 
 
 def expected_off(source: str, parent: Body, child_labels: tuple[str, ...]) -> float:
