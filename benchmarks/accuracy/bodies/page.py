@@ -9,9 +9,9 @@ import numpy as np
 
 from benchmarks.accuracy.bodies.centres import centres_section
 from benchmarks.accuracy.bodies.changes import changes_section
+from benchmarks.accuracy.bodies.hips_page import hip_bars, hip_section
 from benchmarks.accuracy.bodies.linked_limbs import linked_section
 from benchmarks.accuracy.bodies.perturbed import perturbed_section
-from benchmarks.accuracy.bodies.hips_page import hip_bars, hip_section
 from benchmarks.accuracy.bodies.told_page import told_bars, told_section
 
 SIZES = [2, 3, 4]
@@ -210,8 +210,8 @@ def _functional(rows: Sequence[dict[str, Any]], peer: str) -> str:
         f"*along* it they are open. The peer is {whose}: SCoRE and SARA on the same poses, in "
         "the same run. "
         "*With landmarks*: each half solved as a user would solve it; there hips are weighed with "
-        "where the spines of the pelvis have them, which is the same in both halves. *SCoRE* compares the peer's "
-        "centre with the plain one of this project; the time ratio is the peer's processor time "
+        "where the spines of the pelvis have them, which is the same in both halves. *SCoRE* "
+        "compares the peer's centre with the plain one of this project; the time ratio is the peer's processor time "
         "over that of the plain one.\n",
         "| joint | centre | halves | told | with landmarks | along | axis, halves "
         "| with landmarks | told | eighths "

@@ -46,14 +46,14 @@ class Landmark:
     inward: float = 0.0
     down: float = 0.0
     forward: float = 0.0
-    plane: tuple[str, ...] = ()
-    """Left and right label of one pair, and one or more of the middle behind those."""
-    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """m, inward, down and forward, beside what is in proportion; only with a plane."""
     spread: float = 0.03
     """m, standard deviation of the true centre about this point."""
     source: str = ""
     """Paper or measurement the numbers come from."""
+    plane: tuple[str, ...] = ()
+    """Left and right label of one pair, and one or more of the middle behind those."""
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """m, inward, down and forward, beside what is in proportion; only with a plane."""
 
 
 @dataclass(frozen=True)

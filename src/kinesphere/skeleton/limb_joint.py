@@ -16,7 +16,7 @@ from kinesphere.skeleton.linked_joint import LinkedJoint
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.settings import SkeletonSettings
-from kinesphere.skeleton.weighing import LOOSELY, weighed
+from kinesphere.skeleton.weighing import LOOSELY, UNLIKE, weighed
 
 STRAYS = 0.75
 """Share of `SkeletonSettings.undetermined_mm` that a limb's markers may stray in each direction on
@@ -55,7 +55,8 @@ def find_joint(
     own = cloud(labels, sample)
     at = expected_centre(joint, parent, sample, labels)
     weigh = at.anatomy and settings.weigh_anatomy
-    spread = LOOSELY * at.spread if at.anatomy else at.spread
+    may_be_off = UNLIKE * at.spread if at.anatomy and not weigh else at.spread
+    spread = LOOSELY * at.spread if weigh else may_be_off
     outlier, min_spread = settings.outlier_mm * 1e-3, settings.min_spread_mm * 1e-3
     solid = measure_shape(own, outlier, min_spread) if len(labels) > 2 else None
     usual = float(np.sqrt(np.mean(parent.noise**2)) if solid is None else 0.0)
@@ -84,7 +85,7 @@ def find_joint(
     if weigh:
         fit = weighed(fit, at.centre, at.spread)
     drawn = float(np.linalg.norm(fit.centre - alone))
-    measured = MeasuredJoint(joint, fit, at.centre, at.spread, at.source, drawn)
+    measured = MeasuredJoint(joint, fit, at.centre, may_be_off, at.source, drawn)
     return FoundJoint(measured, own, noise, solid)
 
 

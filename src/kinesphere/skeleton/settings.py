@@ -96,7 +96,7 @@ class SkeletonSettings:
     weigh_anatomy: bool = setting(
         True,
         "weigh hips by the motion with where the pelvis' spines have them, each as sure as it is; "
-        "false, for hips or markers unlike other people's, leaves to anatomy what motion leaves open",
+        "false leaves to anatomy what motion leaves open: for hips unlike other people's",
         source="Harrington et al. 2007, doi:10.1016/j.jbiomech.2006.02.003: regression within 3 to "
         "5 mm in each direction; with skin and markers 8 to 9",
     )

@@ -12,9 +12,11 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.geometry.centres import CentreFit
 
-LOOSELY = 3.0
-"""Times its spread within which an expectation holds the fit that it will be weighed with: it
-counts once, and a joint that hardly moves does not run away meanwhile."""
+LOOSELY = 6.0
+"""Times its spread to which an expectation holds the fit that it will be weighed with: it counts
+once, and a joint that hardly moves does not run away meanwhile."""
+UNLIKE = 3.0
+"""Times its spread that it may be off somebody who is said to be unlike other people."""
 
 
 def weighed(fit: CentreFit, expected: Array, spread: float) -> CentreFit:
@@ -23,7 +25,7 @@ def weighed(fit: CentreFit, expected: Array, spread: float) -> CentreFit:
     Parameters
     ----------
     fit
-        By the motion, the expectation within it `LOOSELY` at most. What the motion alone knows
+        By the motion, held by the expectation `LOOSELY` if at all. What the motion alone knows
         stays as it is, and so does the verdict on it.
     expected : (3,) m
     spread
