@@ -211,8 +211,8 @@ def _functional(rows: Sequence[dict[str, Any]], peer: str) -> str:
         "the same run. "
         "*With landmarks*: each half solved as a user would solve it; there hips are weighed with "
         "where the spines of the pelvis have them, which is the same in both halves. *SCoRE* "
-        "compares the peer's centre with the plain one of this project; the time ratio is the peer's processor time "
-        "over that of the plain one.\n",
+        "compares the peer's centre with the plain one of this project; the time ratio is the "
+        "peer's processor time over that of the plain one.\n",
         "| joint | centre | halves | told | with landmarks | along | axis, halves "
         "| with landmarks | told | eighths "
         "| axis, eighths "
