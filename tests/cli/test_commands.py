@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from typer.testing import CliRunner
 import kinesphere
 from kinesphere.cli.app import app
 from kinesphere.cli.console import on_one_line, plain
+from kinesphere.cli.files import read_all_solved
 from kinesphere.cli.options import calibration_from_text
 from kinesphere.io import read, write, write_model
 from kinesphere.labelling import built_in_model
@@ -228,9 +230,29 @@ def test_solve_in_words_and_again_with_reused_axes(solved, call, trc, tmp_path):
     before, after = read(folder).skeleton, read(again).skeleton
     twice = ["--calibration-from", folder, "--calibration-from", again]
     out = ok(call("solve", trc, "-o", tmp_path / "third", *twice, "--model", "cmu41"))
-    assert "axes known best by recording 1: " in out
+    assert f"axes known best by {folder.name}: " in out
     for a, b in zip(before.joints, after.joints, strict=True):
         assert_array_equal(a.axes, b.axes)
+    told = json.loads((again / "skeleton.json").read_text())["joints"]
+    measured = [joint.axes_source == "movement" for joint in before.joints]
+    assert [bool(joint["axes_reused_from"]) for joint in told] == measured
+    assert f"reused from {folder.name}" in (again / "report.html").read_text()
+    method = ["--set", "axes.method=body", "--calibration-from", folder]
+    failed = call("solve", trc, "-o", tmp_path / "no", *method, "--model", "cmu41")
+    assert failed.code == 2
+    assert "give one or the other" in failed.err
+    assert not (tmp_path / "no").exists()
+
+
+@pytest.mark.slow
+def test_recordings_are_called_as_their_folders(solved, tmp_path):
+    folder, _ = solved
+    for way in ("a/hip", "b/hip", "b/knee"):
+        shutil.copytree(folder, tmp_path / way)
+    ways = [tmp_path / way for way in ("a/hip", "b/knee")]
+    assert list(read_all_solved([*ways, ways[0]])) == ["hip", "knee"]
+    both = [tmp_path / "a/hip", tmp_path / "b/hip"]
+    assert list(read_all_solved(both)) == [str(way) for way in both]
 
 
 @pytest.mark.slow

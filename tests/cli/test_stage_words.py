@@ -47,3 +47,30 @@ def test_named_limbs_are_counted(named, said):
     assert f"3 bodies from motion alone in 2 trees; {said}" in words(
         "discovery", limbs, [], **found
     )
+
+
+def test_a_calibration_says_where_axes_are_from():
+    of_hip = {"axis_1": "abduct", "axis_2": "flex", "axis_3": None}
+    found = {
+        "recordings": ["abduct", "flex"],
+        "axes_from": {"left_hip": of_hip, "left_knee": {"axis_1": "flex"}, "neck": {}},
+    }
+    told = words("calibration", [], [], **found)
+    assert (
+        told == "axes known best by abduct: left hip (axis 1); flex: left hip (axis 2), left knee"
+    )
+    one = words("calibration", [], [], recordings=["a"], axes_from={"neck": {"axis_1": "a"}})
+    assert one == "axes of a: neck"
+    none = words("calibration", [], [], recordings=["flex"], axes_from={})
+    assert none == "no axes of other recordings"
+
+
+def test_a_window_beyond_the_end_is_no_empty_row():
+    told = words("calibration", [], [], window_s=[0, 60], used_s=17.999)
+    assert told == "window 0–60 s; 18 s of it are recorded"
+
+
+def test_a_stage_that_only_warns_points_below():
+    stage = {"name": "checks", "settings": {}, "findings": {"found": []}, "warnings": ["a", "b"]}
+    assert stage_in_words(stage, {}) == "2 warnings, see below"
+    assert stage_in_words({**stage, "warnings": []}, {}) == ""

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.ndimage import gaussian_filter1d
 
-from kinesphere.geometry.linkage import Linkage, by_pose_of, misfit
+from kinesphere.geometry.linkage import Linkage, by_pose_of, equations, idle, misfit
 from kinesphere.geometry.linkage_fit import fit_linkage, pose_linkage
 from kinesphere.geometry.rotations import rotation_angle, rotation_exp
 
@@ -32,7 +32,7 @@ def hung(rng):
 
 def markers(linkage):
     empty = np.zeros((FRAMES, sum(len(s) for s in linkage.shapes), 3))
-    return misfit(linkage, empty, np.ones(empty.shape[:2], dtype=bool))[0]
+    return misfit(linkage, empty, np.ones(empty.shape[:2], dtype=bool))
 
 
 def shaken(rng, linkage, size=0.01, turn=0.2):
@@ -84,6 +84,28 @@ def test_what_is_told_says_how_far_off_centres_are(rng, hung):
         told.append(np.trace(np.linalg.inv(fit.information[1])))
     ratio = np.sqrt(np.mean(np.sum(np.square(off), axis=1)) / np.mean(told))
     assert 0.4 < ratio < 2.0
+
+
+def test_an_expectation_does_not_turn_a_body_in_its_own_frame(rng, hung):
+    """No marker tells such a turn: a centre off its expectation once drew it on for ever."""
+    points = markers(hung) + 0.001 * rng.normal(size=(FRAMES, sum(COUNTS), 3))
+    expected = hung.centres + np.array([0.0, 0.0, 0.04])
+    prior = np.array([0.0, 1e4, 1e4])
+    few, many = (
+        fit_linkage(hung, points, expected, prior, 20.0, rounds=rounds).linkage
+        for rounds in (10, 200)
+    )
+    for one, other in zip((*few.shapes, few.centres), (*many.shapes, many.centres), strict=True):
+        assert_allclose(one, other, atol=1e-5)
+
+
+def test_steps_that_turn_a_body_in_its_own_frame_fit_alike(rng, hung):
+    points = markers(hung)
+    steps = idle(hung)
+    assert steps.shape == (3 * (COUNTS[1] + COUNTS[2] + 2), 6)
+    weights = np.ones(points.shape[:2])
+    told = equations(hung, 0.0 * points, weights).told
+    assert_allclose(told @ steps, 0.0, atol=1e-4 * np.abs(told).max())  # poses are held a little
 
 
 def test_poses_alone_come_back(rng, hung):

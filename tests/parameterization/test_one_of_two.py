@@ -9,9 +9,11 @@ from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Step
 from kinesphere.errors import BadModel
+from kinesphere.geometry.chain import joint_rotations
 from kinesphere.parameterization import judged_axes
 from kinesphere.parameterization.anatomy import body_axes, n_told
 from kinesphere.parameterization.angles import solve_angles
+from kinesphere.parameterization.joined import joined
 from kinesphere.parameterization.joint import fit_joint
 from kinesphere.parameterization.one_of_two import completed
 from kinesphere.parameterization.report import stage_warnings
@@ -197,7 +199,62 @@ def test_reused_axes_give_way_to_a_movement_that_tells_more(rng):
     kept = own_or_reused(hip(rng, 5.0, 4.0)[0], there, SETTINGS)
     assert kept.sources == ("reused", "body")
     assert kept.half_told
-    assert own_or_reused(hip(rng, 40.0, 5.0)[0], there, SETTINGS).sources == ("reused", "body")
+    assert own_or_reused(hip(rng, 5.0, 40.0)[0], there, SETTINGS).sources == ("reused", "body")
     both = own_or_reused(hip(rng, 40.0, 40.0)[0], there, SETTINGS)
     assert both.sources == ("movement", "movement")
     assert own_or_reused(hip(rng, 40.0, 40.0)[0], plain, SETTINGS).sources == ("reused", "reused")
+
+
+@pytest.mark.parametrize("told", [0, 1])
+@pytest.mark.parametrize("name", ["left_hip", "right_hip"])
+def test_an_axis_from_elsewhere_and_one_from_here_make_a_joint(rng, told, name):
+    """One recording told axis ``told``, this one tells the other: poses come back to the bit."""
+    reaches = [(6.0, 40.0), (40.0, 6.0)]  # flexion, the proximal axis 1, first
+    elsewhere = fit_joint(hip(rng, *reaches[told], name=name)[0], SETTINGS)
+    view, axes = hip(rng, *reaches[1 - told], name=name)
+    own = fit_joint(view, SETTINGS)
+    assert elsewhere.half_told
+    assert own.half_told
+    plain = make_performance(rng, calibration_s=0.0, n_frames=3).skeleton
+    joint = replace(
+        plain.joint(name),
+        axes=elsewhere.axes,
+        rest=elsewhere.rest,
+        axes_source="movement",
+        axes_assumed=elsewhere.assumed,
+        axes_reused_from=tuple("" if across else "t" for across in elsewhere.assumed),
+        axes_uncertainty=elsewhere.uncertainty,
+    )
+    step = Step("parameterization", findings={"joints": {name: elsewhere.findings}})
+    joints = tuple(joint if j.name == name else j for j in plain.joints)
+    there = replace(plain, joints=joints, history=(step,))
+    both = own_or_reused(view, there, SETTINGS)
+    expected = ("reused", "movement") if told == 0 else ("movement", "reused")
+    assert both.sources == expected
+    assert both.reused_from == (("t", "") if told == 0 else ("", "t"))
+    assert not both.half_told
+    assert both.assumed == ()
+    assert np.isfinite(both.uncertainty).all()
+    for k in (0, 1):
+        assert off(both.axes[k], axes[1 - k]) < 1.0
+        assert both.axes[k] @ body_axes(name)[1 - k] > 0
+    assert both.findings["axes_apart_deg"] == pytest.approx([off(*both.axes)])
+    assert all(isinstance(value, float) for value in both.findings["ranges_deg"])
+    # parameters → poses → parameters
+    wanted = np.deg2rad(rng.uniform(-25, 25, size=(200, 3)))
+    angles = np.c_[wanted[:, :2], np.full(200, np.nan)]
+    poses = joint_rotations(both.axes, both.rest, DOWN, angles, wanted[:, 2])
+    seen = np.ones(200, dtype=bool)
+    back = solve_angles(
+        poses, both.axes, both.rest, DOWN, seen, SETTINGS.angles, SETTINGS.twist, RATE
+    )
+    assert_allclose(back.angles[:, :2], wanted[:, :2], atol=1e-9)
+    assert_allclose(back.twists, wanted[:, 2], atol=1e-9)
+
+
+def test_two_axes_that_are_nearly_one_are_not_put_together(rng):
+    elsewhere = fit_joint(hip(rng, 6.0, 40.0)[0], SETTINGS)
+    own = fit_joint(hip(rng, 40.0, 6.0)[0], SETTINGS)
+    assert joined(elsewhere, own, 1, 1, np.deg2rad(20.0)) is not None
+    near = replace(own, axes=np.array([own.axes[0], elsewhere.axes[0]]))
+    assert joined(elsewhere, near, 1, 1, np.deg2rad(20.0)) is None

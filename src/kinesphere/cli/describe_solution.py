@@ -35,6 +35,7 @@ def describe_solution(solution: Solution) -> dict[str, Any]:
                 "n_axes": joint.n_axes,
                 "axes_from": joint.axes_source,
                 "axes_sources": list(joint.axes_sources),
+                "axes_reused_from": [name or None for name in joint.axes_reused_from],
                 "note": joint.note,
             }
             for joint in solution.skeleton.joints

@@ -1,5 +1,7 @@
 """What commands read and write, with an error that names what was expected."""
 
+from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 
 from kinesphere.cli.options import BadArgument
@@ -27,6 +29,19 @@ def read_solved(path: Path) -> Solution:
     if not isinstance(found, Solution):
         raise BadArgument(f"{path} holds a {type(found).__name__}; a solved folder is wanted")
     return found
+
+
+def read_all_solved(folders: Iterable[Path]) -> dict[str, Solution]:
+    """Return the solutions in folders by the folders' names; by their ways where names are alike.
+
+    A folder that is named twice counts once.
+    """
+    ways = {folder.resolve(): folder for folder in folders}
+    often = Counter(way.name for way in ways)
+    return {
+        way.name if often[way.name] == 1 else str(folder): read_solved(folder)
+        for way, folder in ways.items()
+    }
 
 
 def check_apart(output: Path, *sources: Path | None) -> None:

@@ -49,8 +49,8 @@ def solve(
             "--calibration-from",
             metavar="DIR",
             help="Take axes and rest positions from a solved recording of the same person. Given "
-            "several times (a functional trial for each joint), every joint takes them from where "
-            "they are known best.",
+            "several times (a functional trial for each joint or axis), in any order, every axis "
+            "comes from where it is known best, and contradictions are told.",
         ),
     ] = None,
     facing: Annotated[
@@ -80,7 +80,7 @@ def solve(
     from kinesphere import pipeline
     from kinesphere.cli.console import print_json, progress_bar, stdout
     from kinesphere.cli.describe_solution import describe_solution, show_solution
-    from kinesphere.cli.files import REPORT, read_recording, read_solved, write_solved
+    from kinesphere.cli.files import REPORT, read_all_solved, read_recording, write_solved
     from kinesphere.io import check_solution_place
 
     settings = settings_from_options(assignments, settings_file)
@@ -92,7 +92,7 @@ def solve(
             model_from_text(model),
             subject=subject,
             calibration=span,
-            calibration_from=[read_solved(folder) for folder in calibration_from or ()],
+            calibration_from=read_all_solved(calibration_from or ()),
             facing=facing,  # type: ignore[arg-type]  # normalize names what it knows
             settings=settings,
             progress=progress,

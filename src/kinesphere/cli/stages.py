@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from kinesphere.cli.surface_words import surface_in_words
-from kinesphere.report import counted, finding_in_words, number_in_words
+from kinesphere.report import counted, finding_in_words, in_words, number_in_words
 
 
 def stage_in_words(stage: dict[str, Any], summary: dict[str, Any]) -> str:
@@ -21,7 +21,9 @@ def stage_in_words(stage: dict[str, Any], summary: dict[str, Any]) -> str:
         As ``describe_solution`` returns it.
     """
     words = _WORDS.get(stage["name"], _any)
-    return words({**stage["settings"], **stage["findings"]}, summary)
+    told = words({**stage["settings"], **stage["findings"]}, summary)
+    warnings = stage.get("warnings", ())
+    return told or (f"{counted(len(warnings), 'warning')}, see below" if warnings else "")
 
 
 def _any(found: dict[str, Any], _: dict[str, Any]) -> str:
@@ -159,11 +161,20 @@ def _normalization(found: dict[str, Any], _: dict[str, Any]) -> str:
 
 
 def _calibration(found: dict[str, Any], _: dict[str, Any]) -> str:
-    sources: dict[int, list[str]] = {}
-    for joint, number in (found.get("axes_from") or {}).items():
-        sources.setdefault(number, []).append(str(joint).replace("_", " "))
-    told = "; ".join(f"{number}: {', '.join(names)}" for number, names in sorted(sources.items()))
-    return f"axes known best by recording {told}" if told else ""
+    if span := found.get("window_s"):
+        return f"window {span[0]:g}–{span[1]:g} s; {found['used_s']:.4g} s of it are recorded"
+    sources: dict[str, list[str]] = {}
+    for joint, origins in (found.get("axes_from") or {}).items():
+        whole = len(set(origins.values())) == 1
+        for axis, name in list(origins.items())[: 1 if whole else None]:
+            if name is not None:
+                part = in_words(joint) if whole else f"{in_words(joint)} ({in_words(axis)})"
+                sources.setdefault(str(name), []).append(part)
+    told = "; ".join(f"{name}: {', '.join(parts)}" for name, parts in sorted(sources.items()))
+    if not told:
+        return "no axes of other recordings"
+    several = len(found.get("recordings", ())) > 1
+    return f"axes known best by {told}" if several else f"axes of {told}"
 
 
 def _parameterization(_: dict[str, Any], summary: dict[str, Any]) -> str:

@@ -51,7 +51,7 @@ def track(
             "--calibration-from",
             metavar="DIR",
             help="Take axes and rest positions from a solved recording of the same person, by "
-            "markers or without; may be given again.",
+            "markers or without; may be given again, as for 'kinesphere solve'.",
         ),
     ] = None,
     facing: Annotated[
@@ -82,7 +82,7 @@ def track(
 
     from kinesphere.cli.console import print_json, print_warnings, progress_bar, stdout
     from kinesphere.cli.describe_solution import describe_solution, show_solution
-    from kinesphere.cli.files import REPORT, read_solved
+    from kinesphere.cli.files import REPORT, read_all_solved
     from kinesphere.io import check_solution_place
     from kinesphere.io.images import opencv
     from kinesphere.io.scene import read_scene
@@ -98,7 +98,7 @@ def track(
         found = solve_scene(
             scene,
             calibration=span,
-            calibration_from=[read_solved(folder) for folder in calibration_from or ()],
+            calibration_from=read_all_solved(calibration_from or ()),
             facing=facing,  # type: ignore[arg-type]  # normalize names what it knows
             settings=settings,
             progress=progress,

@@ -16,7 +16,7 @@ _A = TypeVar("_A", bound=NDArray[Any])
 def given_away(array: _A) -> _A:
     """Return an array nobody writes to any more: containers take it without a copy."""
     array.flags.writeable = False
-    return array
+    return array.view()  # whose base is the array, even where a kernel's result owns no memory
 
 
 def frozen(values: ArrayLike, *shape: int | None, name: str) -> Array:

@@ -74,6 +74,9 @@ class Joint:
     axes_assumed: tuple[bool, ...] = ()
     """For each axis whether it was put across those from ``axes_source``, near the body frame's,
     because nothing told it; empty where none was."""
+    axes_reused_from: tuple[str, ...] = ()
+    """For each axis the recording it was taken from; empty for an axis that is this recording's
+    own or put across, and where none is from another."""
     axes_uncertainty: Array | None = None
     """(n_axes,) rad, standard deviation of each axis' direction; NaN where unknown."""
     note: str = ""
@@ -94,6 +97,13 @@ class Joint:
                 raise BadModel(
                     f"joint {self.name} has {self.n_axes} axes; which of them are assumed must be "
                     f"told of each, and not be all of them, but is {self.axes_assumed}"
+                )
+        if self.axes_reused_from:
+            put(self, "axes_reused_from", tuple(map(str, self.axes_reused_from)))
+            if len(self.axes_reused_from) != self.n_axes:
+                raise BadModel(
+                    f"joint {self.name} has {self.n_axes} axes; where they were taken from must be "
+                    f"told of each, but is {self.axes_reused_from}"
                 )
         if self.rest is not None:
             put(self, "rest", frozen(self.rest, 3, 3, name=f"{self.name} rest"))
@@ -117,6 +127,7 @@ class Joint:
             rest=other.rest,
             axes_source=other.axes_source,
             axes_assumed=other.axes_assumed,
+            axes_reused_from=other.axes_reused_from,
             axes_uncertainty=other.axes_uncertainty,
         )
 
@@ -124,7 +135,13 @@ class Joint:
     def without_axes(self) -> "Joint":
         """Itself as it is before parameterization."""
         return replace(
-            self, axes=None, rest=None, axes_source=None, axes_assumed=(), axes_uncertainty=None
+            self,
+            axes=None,
+            rest=None,
+            axes_source=None,
+            axes_assumed=(),
+            axes_reused_from=(),
+            axes_uncertainty=None,
         )
 
     @property
@@ -132,8 +149,26 @@ class Joint:
         """Where each axis comes from, (n_axes,); empty where that is not told."""
         if self.axes_source is None:
             return ()
-        assumed = self.axes_assumed or (False,) * self.n_axes
-        return tuple("body" if one else self.axes_source for one in assumed)
+        return sources_of_axes(
+            self.axes_source, self.n_axes, self.axes_assumed, self.axes_reused_from
+        )
+
+
+def sources_of_axes(
+    source: AxesSource, n_axes: int, assumed: tuple[bool, ...], reused_from: tuple[str, ...]
+) -> tuple[AxesSource, ...]:
+    """Return where each axis of a joint comes from, (n_axes,).
+
+    One that was put across others is the body's; beside reused ones, one that comes from no other
+    recording was told by the movement here.
+    """
+    across = assumed or (False,) * n_axes
+    own = tuple(source == "reused" and bool(reused_from) and not name for name in reused_from)
+    here = own or (False,) * n_axes
+    return tuple(
+        "body" if put else "movement" if mine else source
+        for put, mine in zip(across, here, strict=True)
+    )
 
 
 @dataclass(frozen=True, eq=False)

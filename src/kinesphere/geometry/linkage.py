@@ -61,18 +61,22 @@ class Equations(NamedTuple):
     """(n_frames, n_pose)."""
 
 
-def misfit(linkage: Linkage, points: Array, seen: NDArray[np.bool_]) -> tuple[Array, float]:
-    """Return residuals (n_frames, n_markers, 3) m, 0 where unseen, and their robust scale in m."""
+def misfit(linkage: Linkage, points: Array, seen: NDArray[np.bool_]) -> Array:
+    """Return residuals (n_frames, n_markers, 3) m, 0 where unseen."""
     origins = linkage.origins
     placed = [
         origins[:, body, None] + shape @ np.swapaxes(linkage.rotations[:, body], 1, 2)
         for body, shape in enumerate(linkage.shapes)
     ]
-    off = np.where(seen[..., None], np.concatenate(placed, axis=1) - points, 0.0)
-    free, taken = 3 * seen.sum() / len(points), 3 * len(linkage.parents) + 3
+    return np.where(seen[..., None], np.concatenate(placed, axis=1) - points, 0.0)
+
+
+def scale_of(off: Array, seen: NDArray[np.bool_], n_bodies: int) -> float:
+    """Return the robust standard deviation of residuals in each direction, in m."""
+    free, taken = 3 * seen.sum() / len(off), 3 * n_bodies + 3
     usual = float(np.median(lengths(off)[seen])) / _HALF_NORMAL
     # the poses take up some of the coordinates: what is left looks smaller than the noise
-    return off, max(usual * float(np.sqrt(free / max(free - taken, 1.0))), FLOOR)
+    return max(usual * float(np.sqrt(free / max(free - taken, 1.0))), FLOOR)
 
 
 def equations(linkage: Linkage, off: Array, weights: Array) -> Equations:
@@ -154,6 +158,27 @@ def still(linkage: Linkage) -> Array:
         total += turn.T @ turn / max(size, 1e-12) * 1e8  # beside it a marker known to 0.1 mm
         first += 3 * len(shape)
     return total
+
+
+def idle(linkage: Linkage) -> Array:
+    """Return (n_shared, n) steps, orthonormal, that turn bodies in their own frames and fit alike.
+
+    They move shapes and what hangs from them: whoever expects a centre somewhere in its parent
+    could otherwise go there for ever without anything in the world moving.
+    """
+    n_shapes = 3 * sum(len(s) for s in linkage.shapes[1:])
+    turns, first = [], 0
+    for body, shape in enumerate(linkage.shapes[1:], start=1):
+        turn = np.zeros((n_shapes + 3 * (len(linkage.parents) - 1), 3))
+        turn[first : first + shape.size] = hat(shape).reshape(-1, 3)
+        for child in np.flatnonzero(np.equal(linkage.parents, body)):
+            at = n_shapes + 3 * (child - 1)
+            turn[at : at + 3] = hat(linkage.centres[child])
+        turns.append(turn)
+        first += shape.size
+    steps, sizes, _ = np.linalg.svd(np.concatenate(turns, axis=1), full_matrices=False)
+    kept: Array = steps[:, sizes > FLOOR]
+    return kept
 
 
 def inverse_of(matrix: Array) -> Array:

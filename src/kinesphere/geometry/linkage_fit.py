@@ -10,9 +10,11 @@ from kinesphere.geometry.linkage import (
     Linkage,
     by_pose_of,
     equations,
+    idle,
     inverse_of,
     misfit,
     moved_by,
+    scale_of,
     square_of,
     still,
 )
@@ -24,6 +26,8 @@ SETTLED = 1e-5
 """m, step of shapes and centres that ends the fit."""
 STILL = 1e-3
 """rad, turn that ends the fit of a pose."""
+DONE = 1e-4
+"""rad, turn after which a pose is left as it is."""
 NEAR = 0.3
 """rad, how far bodies may have turned since the poses that a fit of poses begins with."""
 LONGEST = 0.05
@@ -80,7 +84,8 @@ def fit_linkage(
     n_shared = 3 * sum(len(s) for s in start.shapes[1:]) + 3 * (len(start.parents) - 1)
     stiff = np.repeat(np.append(np.zeros(n_shared // 3 - len(prior) + 1), prior[1:]), 3)
     for _ in range(rounds):
-        off, scale = misfit(linkage, points, seen)
+        off = misfit(linkage, points, seen)
+        scale = scale_of(off, seen, len(linkage.parents))
         size = lengths(off) / scale
         weights = seen / np.sqrt(1 + (size / 2) ** 2) / scale**2 * (looks / len(points))
         normal = equations(linkage, off, weights)
@@ -88,6 +93,8 @@ def fit_linkage(
         strays = np.zeros(n_shared)
         strays[-3 * (len(prior) - 1) :] = (linkage.centres[1:] - expected[1:]).ravel()
         step = -inverse_of(told) @ (normal.score + stiff * strays)
+        turning = idle(linkage)
+        step -= turning @ (turning.T @ step)
         length = float(np.linalg.norm(step))
         step *= min(1.0, LONGEST / max(length, 1e-12))
         linkage = moved_by(linkage, step, -(normal.own + normal.follow @ step))
@@ -126,22 +133,31 @@ def pose_linkage(
     settled : (n_frames,) of bool
     """
     held = start._replace(shapes=(np.empty((0, 3)), *start.shapes[1:]))
-    seen = is_seen(points)
-    settled = np.zeros(len(points), dtype=np.bool_)
+    seen, rotations = is_seen(points), start.rotations.copy()
+    off = misfit(held, points, seen)
     turned = np.zeros((len(points), 3 * len(start.parents) - 3))
+    settled = np.zeros(len(points), dtype=np.bool_)
+    turning = np.arange(len(points))
     for _ in range(rounds):
-        off, scale = misfit(held, points, seen)
-        root = (1 + (lengths(off) / scale / 2) ** 2) ** -0.25
-        by_pose = by_pose_of(held, points.shape[1])[..., 3:-3]
-        pose = (by_pose * root[..., None, None]).reshape(len(points), -1, by_pose.shape[3])
-        pull = np.swapaxes(pose, 1, 2) @ (off * root[..., None]).reshape(len(points), -1, 1)
+        scale = scale_of(off, seen, len(start.parents))
+        part = held._replace(rotations=rotations[turning], origin=start.origin[turning])
+        root = (1 + (lengths(off[turning]) / scale / 2) ** 2) ** -0.25
+        by_pose = by_pose_of(part, points.shape[1])[..., 3:-3]
+        pose = (by_pose * root[..., None, None]).reshape(len(turning), -1, by_pose.shape[3])
+        pull = np.swapaxes(pose, 1, 2) @ (off[turning] * root[..., None]).reshape(
+            len(turning), -1, 1
+        )
         firm = (scale / NEAR) ** 2
         square = square_of(pose) + firm * np.eye(by_pose.shape[3])
-        step = -np.linalg.solve(square, pull + firm * turned[..., None])[..., 0]
+        step = -np.linalg.solve(square, pull + firm * turned[turning][..., None])[..., 0]
         step *= np.minimum(1.0, WIDEST / np.maximum(np.abs(step).max(axis=1), 1e-12))[:, None]
-        turned += step
-        held = moved_by(held, np.zeros(0), np.pad(step, ((0, 0), (3, 3))))
-        settled = np.abs(step).max(axis=1) < STILL
-        if settled.all():
+        turned[turning] += step
+        part = moved_by(part, np.zeros(0), np.pad(step, ((0, 0), (3, 3))))
+        rotations[turning] = part.rotations
+        off[turning] = misfit(part, points[turning], seen[turning])
+        farthest = np.abs(step).max(axis=1)
+        settled[turning] = farthest < STILL
+        turning = turning[farthest >= DONE]
+        if not len(turning):
             break
-    return held._replace(shapes=start.shapes), settled
+    return start._replace(rotations=rotations), settled

@@ -53,6 +53,7 @@ class _Joint(_Loose):
     range_of_motion_rad: float | None
     axes_source: AxesSource | None
     axes_sources: tuple[AxesSource, ...] = ()
+    axes_reused_from: tuple[str | None, ...] = ()
     note: str = ""
 
 
@@ -96,6 +97,7 @@ def skeleton_to_dict(skeleton: Skeleton) -> dict[str, Any]:
                 "range_of_motion_rad": joint.range_of_motion,
                 "axes_source": joint.axes_source,
                 "axes_sources": joint.axes_sources,
+                "axes_reused_from": [name or None for name in joint.axes_reused_from],
                 "note": joint.note,
             }
             for joint in skeleton.joints
@@ -163,6 +165,7 @@ def _joint(found: _Joint) -> Joint:
         rest=None if found.rest is None else np.array(found.rest),
         axes_source=found.axes_source,
         axes_assumed=_assumed(found),
+        axes_reused_from=tuple(name or "" for name in found.axes_reused_from),
         axes_uncertainty=spread,
         note=found.note,
     )

@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from kinesphere.data import Array, AxesSource, Json
+from kinesphere.data.skeleton import sources_of_axes
 from kinesphere.parameterization.confidence import AxesQuality
 
 
@@ -34,6 +35,8 @@ class JointFit:
     """Whether a movement tells one axis of the two that move the limb."""
     loose: str = ""
     """How far halves of the movement contradict each other where its axes still serve."""
+    reused_from: tuple[str, ...] = ()
+    """For each axis the recording it was taken from; empty for this one, or for none at all."""
     misfit: str = ""
     """How far axes from another recording miss the limb of this one, where they do."""
 
@@ -45,8 +48,7 @@ class JointFit:
     @property
     def sources(self) -> tuple[AxesSource, ...]:
         """Where each axis is from."""
-        assumed = self.assumed or (False,) * len(self.axes)
-        return tuple("body" if one else self.source for one in assumed)
+        return sources_of_axes(self.source, len(self.axes), self.assumed, self.reused_from)
 
 
 def said_of(fit: JointFit) -> str:

@@ -1,17 +1,20 @@
 """Axes from another recording: what was doubted of them there, and whether they fit here."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from kinesphere.data import Array, Json, Skeleton
 from kinesphere.parameterization.anatomy import n_told, wanted_n_axes
 from kinesphere.parameterization.angles import JointAngles
+from kinesphere.parameterization.joined import counterpart, joined, told_axes
 from kinesphere.parameterization.joint import OUT_OF_REACH, solve_joint
 from kinesphere.parameterization.joint_fit import JointFit
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.third_axis import fit_axes
 from kinesphere.parameterization.view import JointView
+from kinesphere.parameterization.zero import reach_and_twist
 
 CARRIED = (
     "n_axes_by_data",
@@ -60,6 +63,7 @@ def reused_fit(name: str, reuse: Skeleton | None) -> JointFit | None:
         said,
         assumed=joint.axes_assumed,
         half_told=any(joint.axes_assumed) and n_told(joint) < wanted_n_axes(name),
+        reused_from=joint.axes_reused_from,
     )
 
 
@@ -68,13 +72,39 @@ def own_or_reused(
 ) -> JointFit:
     """Return a joint's axes from another solution, or from its own movement if that tells more.
 
-    What was only assumed there may be measured here.
+    What was only assumed there may be measured here: of two axes that alone, beside the other from
+    there, where the limb can be followed about the two.
     """
     there = reused_fit(view.name, reuse)
     if there is not None and not there.half_told:
         return there
     own = fit_axes(view, settings)
-    return own if there is None or own.n_told > there.n_told else there
+    if there is None or own.n_told > there.n_told:
+        return own
+    both = _with_own(there, own, view, settings)
+    return there if both is None else both
+
+
+def _with_own(
+    there: JointFit, own: JointFit, view: JointView, settings: ParameterizationSettings
+) -> JointFit | None:
+    """Return a half told joint with the axis that this recording tells in place of the assumed one.
+
+    The rest orientation is that of the recording which tells the distal axis (`joined`).
+    """
+    if len(there.axes) != 2 or not own.half_told:
+        return None
+    closest = np.deg2rad(settings.axes.smallest_angle)
+    place = there.assumed.index(True)
+    for k in told_axes(own, view.name):
+        if counterpart(own, k, there, view.name) == place:
+            both = joined(there, own, place, k, closest)
+            if both is None:
+                return None
+            both = replace(both, rest=own.rest if place == 0 else there.rest)
+            share, _ = reach_and_twist(view, both.axes, both.rest, settings)
+            return None if share > OUT_OF_REACH else both
+    return None
 
 
 def told_of(name: str, skeleton: Skeleton) -> Mapping[str, Json]:

@@ -125,6 +125,7 @@ def parameterize(
                 rest=fit.rest,
                 axes_source=fit.source,
                 axes_assumed=fit.assumed,
+                axes_reused_from=fit.reused_from,
                 axes_uncertainty=fit.uncertainty,
             )
         )

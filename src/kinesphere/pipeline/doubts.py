@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from kinesphere import __version__
-from kinesphere.data import Json, Motion, Recording, Skeleton, Step
+from kinesphere.data import Json, Motion, Recording, Step
 from kinesphere.errors import BadRecording, KinesphereError
+from kinesphere.pipeline.best_axes import Calibrated
 from kinesphere.quality import Finding, check_at_zero, check_recording, gathered
 
 IMPOSSIBLE = (0.1, 10.0)
@@ -61,7 +62,7 @@ def _missing(found: Sequence[Finding]) -> dict[str, Json]:
 
 
 def calibration_doubts(
-    motion: Motion, calibration: tuple[float, float] | None, reused: Sequence[Skeleton]
+    motion: Motion, calibration: tuple[float, float] | None, reused: Sequence[Calibrated]
 ) -> tuple[str, ...]:
     """Return what speaks against a calibration window, or against solutions to be reused."""
     doubts = []
@@ -72,7 +73,7 @@ def calibration_doubts(
             f"the calibration window {start:g}:{end:g} s reaches beyond the recording, "
             f"which lasts {length:.2f} s; what there is of it was used"
         )
-    for number, other in enumerate(reused, start=1):
+    for name, other in sorted(reused, key=lambda one: one.name):
         pairs = [
             (limb.length, its.length)
             for limb in motion.skeleton.limbs
@@ -81,7 +82,7 @@ def calibration_doubts(
         ]
         ratios = np.array([a / b for a, b in pairs if a > 0 and b > 0])
         if len(ratios) and (off := float(np.median(np.abs(ratios - 1)))) > OTHER_PERSON:
-            which = f" ({number} of {len(reused)})" if len(reused) > 1 else ""
+            which = f" ({name})" if len(reused) > 1 else ""
             doubts.append(
                 f"limbs differ by {off:.0%} (median) from those of the solution to be reused"
                 f"{which}: axes and rest positions hold for one person only"

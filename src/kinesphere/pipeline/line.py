@@ -1,6 +1,5 @@
 """The straight line: a recording goes in, joint parameters come out."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from kinesphere.data import Recording, Solution, TopologicalModel
@@ -11,7 +10,7 @@ from kinesphere.pipeline.choice import MOTION_ALONE, model_for, with_labels
 from kinesphere.pipeline.clock import Clock, Progress
 from kinesphere.pipeline.doubts import with_checks
 from kinesphere.pipeline.motion_alone import discovered, normalized_somehow
-from kinesphere.pipeline.reuse import Source, parameterized, skeletons_of
+from kinesphere.pipeline.reuse import Sources, calibrated, check_reuse, parameterized
 from kinesphere.pipeline.settings import Settings
 from kinesphere.pipeline.surface import body_for, surface_for
 from kinesphere.quality import orient
@@ -27,7 +26,7 @@ def solve(
     *,
     subject: str | None = None,
     calibration: tuple[float, float] | None = None,
-    calibration_from: Source | Sequence[Source] | None = None,
+    calibration_from: Sources = None,
     facing: Facing | None = None,
     settings: Settings | None = None,
     progress: Progress | None = None,
@@ -48,7 +47,7 @@ def solve(
         (start, end) in s since the first stored frame: where the main movements are performed.
     calibration_from
         Another recording of the same person, whose axes and rest positions are used again; of
-        several, for each joint those that are known best.
+        several, for each joint the axes that are known best. By name, or named as their files.
     facing
         The axis of the world a person looks along in the default position, where the motion does
         not tell.
@@ -65,10 +64,13 @@ def solve(
         If the model that was asked for does not fit.
     DegenerateMotion, AmbiguousFacing
         If the motion does not determine what a stage needs.
+    BadSetting
+        If ``calibration_from`` is given although the body's axes are asked for.
     """
     settings = Settings() if settings is None else settings
     if recording.n_frames == 0 or not recording.seen.any():
         raise BadRecording("the recording holds no marker position: nothing to solve")
+    check_reuse(settings.parameterization, calibration_from)
     clock = Clock(progress, len(STAGES))
     body = body_for(settings.surface)  # first, so that a file that cannot be used costs no wait
     given = model_for(recording, model, subject)
@@ -99,7 +101,7 @@ def solve(
         motion = aligned(motion, settings.normalization, facing)
     with clock.stage("parameterization"):
         parameters = parameterized(
-            motion, settings.parameterization, calibration, skeletons_of(calibration_from)
+            motion, settings.parameterization, calibration, calibrated(calibration_from)
         )
     with clock.stage("surface"):
         surface, step = surface_for(motion, settings.surface, body)

@@ -1,40 +1,61 @@
-"""Axes from other recordings of the same person: per joint from where they are known best."""
+"""Axes from other recordings of the same person, and what is said of them."""
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TypeAlias
 
-import numpy as np
-
 from kinesphere import __version__
-from kinesphere.data import Joint, Json, Motion, Parameters, Skeleton, Solution, Step
-from kinesphere.parameterization import ParameterizationSettings, n_told, parameterize, told_of
+from kinesphere.data import Json, Motion, Parameters, Skeleton, Solution, Step
+from kinesphere.errors import BadSetting
+from kinesphere.parameterization import ParameterizationSettings, parameterize
+from kinesphere.pipeline.best_axes import Calibrated, with_best_axes
 from kinesphere.pipeline.doubts import calibration_doubts
 
 Source: TypeAlias = Solution | Skeleton
 """Another recording of the same person, solved."""
 
+Sources: TypeAlias = Source | Sequence[Source] | Mapping[str, Source] | None
+"""One or several of them, with names or without."""
 
-def skeletons_of(sources: Source | Sequence[Source] | None) -> tuple[Skeleton, ...]:
-    """Return the skeletons of one solution or several, in their order."""
+
+def calibrated(sources: Sources) -> tuple[Calibrated, ...]:
+    """Return the skeletons of one solution or several, each with a name.
+
+    Those that come without one are called as the file that was solved, or by their number.
+    """
     if sources is None:
         return ()
+    if isinstance(sources, Mapping):
+        return tuple(Calibrated(name, _skeleton(source)) for name, source in sources.items())
     several = (sources,) if isinstance(sources, Solution | Skeleton) else sources
+    files = [_file(source) for source in several]
+    often = Counter(files)
     return tuple(
-        replace(s.skeleton, history=s.parameters.history) if isinstance(s, Solution) else s
-        for s in several
+        Calibrated(file if file and often[file] == 1 else f"recording {i}", _skeleton(source))
+        for i, (file, source) in enumerate(zip(files, several, strict=True), start=1)
     )
+
+
+def check_reuse(settings: ParameterizationSettings, sources: Sources) -> None:
+    """Raise BadSetting where the axes of other recordings and those of the body are both wanted."""
+    if settings.axes.method == "body" and calibrated(sources):
+        raise BadSetting(
+            "axes.method is 'body', which takes no axes of another recording, yet one is given to "
+            "take them from (--calibration-from); give one or the other"
+        )
 
 
 def parameterized(
     motion: Motion,
     settings: ParameterizationSettings,
     calibration: tuple[float, float] | None,
-    others: Sequence[Skeleton],
+    others: Sequence[Calibrated],
 ) -> Parameters:
     """Return the joint parameters of a motion, about its own axes or those of other recordings.
 
-    What speaks against the calibration window or the others becomes a step of the history.
+    From where axes of others are, and what speaks against them or against the window, becomes a
+    step of the history.
 
     Parameters
     ----------
@@ -44,84 +65,51 @@ def parameterized(
     calibration
         (start, end) in s since the first stored frame: where the main movements are performed.
     others
-        As `skeletons_of` returns them; empty for the motion's own axes.
+        As `calibrated` returns them; empty for the motion's own axes.
 
     Raises
     ------
     DegenerateMotion, BadSetting
         As `kinesphere.parameterization.parameterize` does.
     """
-    bearing, places = with_best_axes(motion.skeleton, others)
     doubts = calibration_doubts(motion, calibration, others)
-    if doubts or len(others) > 1:
-        found: dict[str, Json] = {}
-        if len(others) > 1:
-            found["axes_from"] = {name: number + 1 for name, number in places.items()}
+    found: dict[str, Json] = {}
+    if calibration is not None and doubts:
+        length = motion.n_frames / motion.rate
+        start, end = calibration
+        found = {"window_s": [start, end], "used_s": max(min(end, length) - max(start, 0.0), 0.0)}
+    reuse = None
+    if others:
+        reuse, apart = with_best_axes(motion.skeleton, others, settings.axes)
+        found |= {
+            "recordings": [*sorted(other.name for other in others)],
+            "axes_from": {j.name: _origins(j.axes_reused_from) for j in reuse.joints if j.n_axes},
+        }
+        if apart:
+            doubts += (
+                "recordings contradict each other about these axes by more than 10° and more than "
+                f"they are uncertain: {', '.join(apart)}",
+            )
+    if found:
         step = Step("calibration", {}, found, doubts, __version__)
         motion = replace(motion, history=(*motion.history, step))
-    reuse = bearing if others else None
     return parameterize(motion, settings, calibration=calibration, reuse=reuse)
 
 
-def with_best_axes(
-    skeleton: Skeleton, sources: Sequence[Skeleton]
-) -> tuple[Skeleton, dict[str, int]]:
-    """Return a skeleton whose joints bear the axes that some other knows best.
-
-    Laboratories record a functional trial for each joint: a hip's axes are measured in one, a
-    knee's in another. Of the solutions that measured a joint's axes, those that measured most of
-    them, the one with the smallest largest uncertainty serves; the first of equal ones. What
-    twist that goes with the angle makes unsure does not count: it is the same in every recording,
-    and a long movement only shows it.
-
-    Parameters
-    ----------
-    skeleton
-        Of the motion to be solved.
-    sources
-        Parameterized skeletons of the same person.
-
-    Returns
-    -------
-    skeleton
-        Joints that nobody measured have no axes. The last step of its history says of the others
-        what was found of their axes where they come from.
-    chosen
-        Joint → index in ``sources``.
-    """
-    joints, chosen = [], {}
-    for joint in skeleton.joints:
-        others = {
-            i: source.joint(joint.name)
-            for i, source in enumerate(sources)
-            if joint.name in source.joint_names and _measured(source.joint(joint.name))
-        }
-        if others:
-            best = min(
-                others, key=lambda i: (-n_told(others[i]), _uncertainty(others[i], sources[i]))
-            )
-            chosen[joint.name] = best
-            joints.append(joint.with_axes_of(others[best]))
-        else:
-            joints.append(joint.without_axes)
-    told: dict[str, Json] = {
-        name: dict(told_of(name, sources[place])) for name, place in chosen.items()
-    }
-    step = Step("parameterization", findings={"joints": told})
-    return replace(skeleton, joints=tuple(joints), history=(*skeleton.history, step)), chosen
+def _origins(names: Sequence[str]) -> Json:
+    """Return where each axis of a joint is from; null for one that was put across."""
+    return {f"axis_{k}": name or None for k, name in enumerate(names, start=1)}
 
 
-def _measured(joint: Joint) -> bool:
-    return joint.axes is not None and joint.rest is not None and joint.axes_source != "body"
+def _skeleton(source: Source) -> Skeleton:
+    if isinstance(source, Skeleton):
+        return source
+    return replace(source.skeleton, history=source.parameters.history)
 
 
-def _uncertainty(joint: Joint, source: Skeleton) -> float:
-    """Return the largest that is known, rad, without another reading; infinite where none is."""
-    told = joint.axes_uncertainty
-    if told is None or not np.isfinite(told).any():
-        return np.inf
-    other = told_of(joint.name, source).get("other_reading_deg")
-    told = np.array(told)
-    if isinstance(other, float):  # of a hinge, which is proximal to what was added to it
-        told[-1] = np.sqrt(max(told[-1] ** 2 - np.deg2rad(other) ** 2, 0.0))
-    return float(np.nanmax(told))
+def _file(source: Source) -> str:
+    """Return the name of the file that was solved; empty where nothing tells it."""
+    for step in source.history if isinstance(source, Solution) else ():
+        if step.name == "read":
+            return str(step.settings.get("file") or "")
+    return ""

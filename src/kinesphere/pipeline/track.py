@@ -1,6 +1,6 @@
 """The line from images: cameras are checked, the body is tracked, the rest is as with markers."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from kinesphere import __version__
@@ -19,7 +19,7 @@ from kinesphere.markerless.rig import standing_as_bundled
 from kinesphere.markerless.tracker import track
 from kinesphere.normalization import Facing
 from kinesphere.pipeline.clock import Clock, Progress
-from kinesphere.pipeline.reuse import Source, skeletons_of
+from kinesphere.pipeline.reuse import Sources, calibrated, check_reuse
 from kinesphere.pipeline.settings import Settings
 from kinesphere.pipeline.surface import BUNDLED, body_for, surface_for
 from kinesphere.pipeline.wishes import (
@@ -48,7 +48,7 @@ def solve_scene(
     scene: Scene,
     *,
     calibration: tuple[float, float] | None = None,
-    calibration_from: Source | Sequence[Source] | None = None,
+    calibration_from: Sources = None,
     facing: Facing | None = None,
     settings: Settings | None = None,
     progress: Progress | None = None,
@@ -85,6 +85,7 @@ def solve_scene(
     """
     settings = Settings() if settings is None else settings
     check_wishes(scene, calibration, facing)
+    check_reuse(settings.parameterization, calibration_from)
     riding = None if settings.surface.body == BUNDLED else body_for(settings.surface)
     clock = Clock(progress, len(TRACKING_STAGES))
     with clock.stage("scene checks"):
@@ -103,7 +104,7 @@ def solve_scene(
     with clock.stage("normalization"):
         motion = normalized_at_any_rate(measured, settings.normalization, facing)
     with clock.stage("parameterization"):
-        others = skeletons_of(calibration_from)
+        others = calibrated(calibration_from)
         parameters = parameterized_at_any_rate(
             motion, settings.parameterization, calibration, others
         )

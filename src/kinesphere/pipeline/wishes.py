@@ -5,10 +5,11 @@ from dataclasses import replace
 from typing import get_args
 
 from kinesphere import __version__
-from kinesphere.data import Motion, Parameters, Scene, Skeleton, Step
+from kinesphere.data import Motion, Parameters, Scene, Step
 from kinesphere.errors import AmbiguousFacing, BadSetting, DegenerateMotion, KinesphereError
 from kinesphere.normalization import Facing, NormalizationSettings
 from kinesphere.parameterization import ParameterizationSettings
+from kinesphere.pipeline.best_axes import Calibrated
 from kinesphere.pipeline.motion_alone import normalized_somehow
 from kinesphere.pipeline.reuse import parameterized
 
@@ -45,7 +46,7 @@ def parameterized_at_any_rate(
     motion: Motion,
     settings: ParameterizationSettings,
     calibration: tuple[float, float] | None,
-    others: Sequence[Skeleton],
+    others: Sequence[Calibrated],
 ) -> Parameters:
     """Parameterize a motion as asked, or, where that cannot be, about its own axes."""
     try:

@@ -12,5 +12,6 @@ from kinesphere.report.page import report_html as report_html
 from kinesphere.report.tiles import rms as rms
 from kinesphere.report.wording import counted as counted
 from kinesphere.report.wording import finding_in_words as finding_in_words
+from kinesphere.report.wording import in_words as in_words
 from kinesphere.report.wording import number_in_words as number_in_words
 from kinesphere.report.wording import unique as unique

@@ -102,9 +102,17 @@ def _joint_row(solution: Solution, j: int, joint: Joint) -> JointRow:
 
 def _origins(joint: Joint) -> str:
     """Return where a joint's axes come from, in words."""
-    if not joint.axes_assumed:
-        return f"{joint.n_axes} from {joint.axes_source}" if joint.axes_source else "–"
-    return ", ".join(f"axis {k} from {s}" for k, s in enumerate(joint.axes_sources, start=1))
+    if joint.axes_source is None:
+        return "–"
+    origins = [
+        f"reused from {name}" if name else f"from {source}"
+        for source, name in zip(
+            joint.axes_sources, joint.axes_reused_from or [""] * joint.n_axes, strict=True
+        )
+    ]
+    if len(set(origins)) == 1:
+        return f"{joint.n_axes} {origins[0]}"
+    return ", ".join(f"axis {k} {origin}" for k, origin in enumerate(origins, start=1))
 
 
 def _trust(joint: Joint, unreachable: float) -> str:

@@ -142,7 +142,7 @@ def fit_group(
 
 def _averaging_share(linkage: Linkage, points: Array) -> float:
     """Return the share of the markers' strays that averages out over frames, 0…1."""
-    off = misfit(linkage, points, is_seen(points))[0]
+    off = misfit(linkage, points, is_seen(points))
     first, others = linkage.rotations[:, :1], linkage.rotations[:, 1:]
     turns = np.swapaxes(first, 2, 3) @ others
     return noise_share(off.reshape(len(off), -1), nearest(turns.reshape(len(turns), -1)))
