@@ -170,6 +170,12 @@ def model():
                 (
                     Landmark({"LSHO": 1.0}, ("C7", "T10"), 0.1, 0.2, -0.3, 0.015, "a paper"),
                     Landmark({"LSHO": 1 / 3, "C7": 2 / 3}),
+                    Landmark(
+                        {"LSHO": 1.0},
+                        ("C7", "T10"),
+                        plane=("C7", "T10", "LSHO"),
+                        offset=(1 / 3, 0.0, -0.01),
+                    ),
                 ),
                 doubtful=True,
             ),
@@ -226,6 +232,12 @@ def test_a_short_model_by_hand_is_enough(tmp_path):
         (lambda c: c["mirror"].append(["LSHO"]), r"mirror\[1\]\[1\] is missing"),
         (lambda c: c.update(aliases=["C07"]), "aliases must be an object"),
         (lambda c: c["joints"][0]["landmarks"][1].update(forward=0.1), "forward need scale"),
+        (lambda c: c["joints"][0]["landmarks"][2].update(plane=["C7", "T10"]), "three or more"),
+        (
+            lambda c: c["joints"][0]["landmarks"][2].update(plane=["C7", "T10", "T10"]),
+            "plane has C7, T10, T10; it needs three or more labels, each once",
+        ),
+        (lambda c: c["joints"][0]["landmarks"][2].update(plane=[]), "offset_m needs plane"),
         (lambda c: c.update(segments=[]), "segments"),
         (lambda c: c.update(name=""), "name"),
         (lambda c: c["joints"][0].update(n_axes="x" * 999), r"n_axes must be .{,40}'x{59}$"),

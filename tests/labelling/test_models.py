@@ -1,6 +1,5 @@
 """The built-in models: complete, symmetrical, and about the body they claim to describe."""
 
-import numpy as np
 import pytest
 
 from kinesphere.errors import BadModel
@@ -75,8 +74,9 @@ def test_left_and_right_mirror_each_other(model):
         assert (twin.parent, twin.child) == (other_side(joint.parent), other_side(joint.child))
         for mine, its in zip(joint.landmarks, twin.landmarks, strict=True):
             assert {swap.get(m, m): w for m, w in mine.weights.items()} == its.weights
-            moves = (mine.inward, mine.down, mine.forward, mine.spread)
-            assert moves == (its.inward, its.down, its.forward, its.spread)
+            assert mine.plane == its.plane
+            moves = (mine.inward, mine.down, mine.forward, mine.offset, mine.spread)
+            assert moves == (its.inward, its.down, its.forward, its.offset, its.spread)
 
 
 def test_shared_markers_belong_to_a_neighbour(model):
@@ -92,7 +92,8 @@ def test_every_joint_has_a_landmark_of_known_labels_with_its_source(model):
         assert joint.landmarks
         for landmark in joint.landmarks:
             assert sum(landmark.weights.values()) == pytest.approx(1, abs=1e-6)
-            assert set(landmark.weights) | set(landmark.scale or ()) <= set(model.labels)
+            named = {*landmark.weights, *(landmark.scale or ()), *landmark.plane}
+            assert named <= set(model.labels)
             assert landmark.source
             assert 0.005 <= landmark.spread <= 0.05
 
@@ -100,33 +101,3 @@ def test_every_joint_has_a_landmark_of_known_labels_with_its_source(model):
 def test_aliases_lead_to_labels_and_are_none_themselves(model):
     assert set(model.aliases.values()) <= set(model.labels)
     assert not set(model.aliases) & set(model.labels)
-
-
-def hip_of(model, pelvis):
-    """Return the left hip that the first landmark puts into a pelvis; x anterior, y up, z right."""
-    (joint,) = (joint for joint in model.joints if joint.name == "left_hip")
-    landmark = joint.landmarks[0]
-    start, end = (np.array(pelvis[label]) for label in landmark.scale)
-    moves = np.array([landmark.forward, -landmark.down, landmark.inward])
-    point = sum(w * np.array(pelvis[label]) for label, w in landmark.weights.items())
-    return point + moves * np.linalg.norm(start - end)
-
-
-def test_hips_are_where_harrington_puts_them():
-    """Harrington et al. 2007 on a pelvis tilted by 12°, as in standing: within 6 mm of theirs."""
-    width, depth, tilt = 0.238, 0.155, np.radians(12)  # m, m
-    forward = np.array([np.cos(tilt), -np.sin(tilt), 0])
-    up = np.array([np.sin(tilt), np.cos(tilt), 0])
-    pelvis = {
-        "LASI": [0, 0, -width / 2],
-        "RASI": [0, 0, width / 2],
-        "LPSI": -depth * forward + [0, 0, -0.045],
-        "RPSI": -depth * forward + [0, 0, 0.045],
-    }
-    theirs = (
-        (-0.24 * depth - 0.0099) * forward
-        + (-0.30 * width - 0.0109) * up
-        + np.array([0, 0, -(0.33 * width + 0.0073)])
-    )
-    ours = hip_of(built_in_model("plugin-gait"), pelvis)
-    assert np.linalg.norm(ours - theirs) < 0.006

@@ -12,12 +12,13 @@ from kinesphere.geometry.rigid import fit_rigid
 from kinesphere.io import read, read_segments
 from kinesphere.labelling import built_in_model, match_labels
 from kinesphere.quality import orient
-from kinesphere.skeleton import fit_skeleton, learn_model
+from kinesphere.skeleton import SkeletonSettings, fit_skeleton, learn_model
 
 pytestmark = pytest.mark.real
 
 SIDES = 0.08  # share by which left and right of one person may differ
 REGRESSION = 0.015  # m: functional hips differ from regression estimates by 11 to 18 mm
+HIPS = 0.010  # m between halves of a hip trial
 ACROSS = 0.006  # m between halves of a knee trial; mind that each half has a hundred frames
 PAIRED = ("thigh", "shank", "upper_arm", "forearm")
 
@@ -129,6 +130,40 @@ def test_knee_repeats_across_its_axis_between_halves_of_its_trial(recordings, si
     axis = np.linalg.svd(turns - turns.mean(axis=0))[2][0]
     across = np.linalg.norm(off - (off @ axis) * axis)
     assert across < ACROSS
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_hip_that_motion_and_anatomy_tell_repeats_between_halves(recordings, side):
+    """They move 77° in one half and 53° in the other; by motion alone 16 and 11 mm lie between."""
+    model = built_in_model("plugin-gait")
+    recording = labelled(recordings / f"functional/Test_func_{side[0]}hip.c3d", "plugin-gait")
+    middle = recording.n_frames // 2
+    halves = [
+        fit_skeleton(part_of(recording, part), model)
+        for part in (slice(middle), slice(middle, None))
+    ]
+    pelves = [half.skeleton.limb("pelvis") for half in halves]
+    onto = fit_rigid(pelves[0].marker_positions, pelves[1].marker_positions[None])
+    first, second = (half.skeleton.joint(f"{side}_hip") for half in halves)
+    moved = onto.rotations[0] @ first.centre_in_parent + onto.shifts[0]
+    assert np.linalg.norm(second.centre_in_parent - moved) < HIPS
+    assert all(one.observability == "determined" for one in (first, second))
+    assert all("towards where it is expected" in one.note for one in (first, second))
+
+
+def test_without_a_say_anatomy_only_gives_what_motion_leaves_open(recordings):
+    model, path = built_in_model("plugin-gait"), recordings / "functional/Test_func_rhip.c3d"
+    recording = labelled(path, "plugin-gait")
+    both, alone = (
+        fit_skeleton(recording, model, SkeletonSettings(weigh_anatomy=weigh)).skeleton
+        for weigh in (True, False)
+    )
+    for name in ("left_hip", "right_hip"):
+        traces = [np.trace(one.joint(name).covariance) for one in (both, alone)]
+        assert traces[0] < traces[1]
+        assert "expected" not in alone.joint(name).note
+    necks = [one.joint("neck").centre_in_parent for one in (both, alone)]
+    assert np.array_equal(*necks)
 
 
 def part_of(recording, part):

@@ -29,7 +29,8 @@ def test_hinges_and_limbs_of_two_markers_hold_their_joint_twice_as_firmly(
     body.rotations, body.shifts = np.tile(np.eye(3), (FRAMES, 1, 1)), np.zeros((FRAMES, 3))
     own = {f"c{i}": np.tile(p, (FRAMES, 1)) for i, p in enumerate(limb(children, -0.4))}
     joint = JointModel("ankle", "shank", "foot", n_axes)
-    centre, spread, source = expected_centre(joint, body, own, tuple(own))
+    centre, spread, source, anatomy = expected_centre(joint, body, own, tuple(own))
     np.testing.assert_allclose(centre, [0, -0.2, 0], atol=1e-12)
     assert spread == pytest.approx(share * 0.4)
     assert source == BETWEEN
+    assert not anatomy

@@ -138,6 +138,21 @@ def test_a_centre_held_where_it_is_expected_is_not_determined_by_what_motion_wou
     assert "± 70 mm" in told[1][1]
 
 
+@pytest.mark.parametrize(
+    ("drawn", "said"),
+    [(0.0053, ", drawn 5 mm towards where it is expected (book)"), (0.0004, "")],
+)
+def test_a_determined_centre_says_how_far_anatomy_has_drawn_it(drawn, said):
+    data = np.diag([0.004, 0.006, 0.011]) ** 2
+    fit = CentreFit(np.zeros(3), 1e-3, data, np.eye(3) / 0.05**2, data / 2, 9)
+    hip = MeasuredJoint(
+        JointModel("left_hip", "pelvis", "left_thigh"), fit, np.zeros(3), 0.009, "book", drawn
+    )
+    verdict, note = verdict_on(hip, np.deg2rad(40), SkeletonSettings())
+    assert verdict == "determined"
+    assert note == f"range of motion 40°{said}"
+
+
 def test_a_centre_drawn_away_is_not_said_to_be_where_it_was_expected():
     data, prior = np.diag([0.0003, 0.0009, 0.09]), np.eye(3) / 0.05**2
     fit = CentreFit(np.array([0.2, 0.0, 0.0]), 1e-3, data, prior, np.linalg.inv(prior), 9)

@@ -16,6 +16,7 @@ from benchmarks.accuracy.bodies.changes import change_rows
 from benchmarks.accuracy.bodies.cost import Cost, cost_rows, plot
 from benchmarks.accuracy.bodies.functional import functional_rows
 from benchmarks.accuracy.bodies.hiding import hiding_rows
+from benchmarks.accuracy.bodies.hips import hip_rows
 from benchmarks.accuracy.bodies.linked_limbs import linked_figures
 from benchmarks.accuracy.bodies.page import bars, page
 from benchmarks.accuracy.bodies.partitions import Row, rows
@@ -55,6 +56,7 @@ SECTIONS: dict[str, Callable[[], Any]] = {
     "told": lambda: [asdict(row) for row in told_rows()],
     "arm": arm_figures,
     "linked": linked_figures,
+    "hips": lambda: [asdict(row) for row in hip_rows()],
     "functional": lambda: [asdict(row) for row in functional_rows()],
     "hiding": lambda: [asdict(row) for row in hiding_rows()],
 }

@@ -45,6 +45,8 @@ class Functional:
     halves_mm: float
     along_mm: float
     halves_deg: float
+    landmarks_mm: float
+    """As ``halves_mm`` where the layout's landmarks have their say."""
     landmarks_deg: float
     """The same where the layout's landmarks have their say, as when a user solves each half."""
     told_mm: float
@@ -85,7 +87,7 @@ def _row(trial: str, name: str) -> Functional:
     blocks = [half_of(recording, model, np.flatnonzero(eighth == k)) for k in (0, 1)]
     ours = _compared(halves, name, _ours, knee=knee)
     mixed = _compared(blocks, name, _ours, knee=knee)
-    aided = [half_of(recording, chosen, part) for part in parts] if knee else halves
+    aided = _compared([half_of(recording, chosen, p) for p in parts], name, _ours, knee=knee)
     peer = _compared(halves, name, _peer, knee=knee)
     here, there = _ours(whole, name), _peer(whole, name)
     poses = _relative(whole, name)
@@ -97,7 +99,8 @@ def _row(trial: str, name: str) -> Functional:
         halves_mm=ours[0],
         along_mm=ours[1],
         halves_deg=ours[2],
-        landmarks_deg=_compared(aided, name, _ours, knee=knee)[2],
+        landmarks_mm=aided[0],
+        landmarks_deg=aided[2],
         told_mm=_told(halves, name, knee=knee),
         told_deg=_told_axis(halves, name) if knee else np.nan,
         blocks_mm=mixed[0],

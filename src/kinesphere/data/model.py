@@ -34,6 +34,10 @@ class Landmark:
     distance between the two ``scale`` labels, towards the middle of the body along its lateral
     axis; then by ``down`` and ``forward`` times that distance along the other two body axes. The
     axes are those of the body in the default position: standing, arms hanging, down is gravity.
+
+    Where a ``plane`` of markers is named, the axes are its own, however the body stands: to the
+    right from its first to its second label, forward within the plane, down across it. ``offset``
+    is what a regression adds besides its shares, in metres.
     """
 
     weights: Mapping[str, float]
@@ -46,6 +50,10 @@ class Landmark:
     """m, standard deviation of the true centre about this point."""
     source: str = ""
     """Paper or measurement the numbers come from."""
+    plane: tuple[str, ...] = ()
+    """Left and right label of one pair, and one or more of the middle behind those."""
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """m, inward, down and forward, beside what is in proportion; only with a plane."""
 
 
 @dataclass(frozen=True)

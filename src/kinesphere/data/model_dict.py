@@ -58,6 +58,14 @@ class _Landmark(_Strict):
     inward: float = Field(0.0, description="Towards the middle of the body, in scales.")
     down: float = Field(0.0, description="Along the body's axis, in scales.")
     forward: float = Field(0.0, description="To the front, in scales.")
+    plane: tuple[_Name, ...] = Field(
+        (),
+        description="Left and right label of a pair, and one or more behind: inward, down and "
+        "forward are along and across the plane of those; empty for the body's own axes.",
+    )
+    offset_m: tuple[float, float, float] = Field(
+        (0.0, 0.0, 0.0), description="Inward, down and forward besides, m; only with a plane."
+    )
     spread_m: float = Field(0.03, gt=0, description="Standard deviation of the true centre, m.")
     source: str = Field("", description="Paper or measurement the numbers come from.")
 
@@ -68,6 +76,12 @@ class _Landmark(_Strict):
             raise ValueError(f"weights add up to {total:g}; they must add up to 1")
         if self.scale is None and (self.inward or self.down or self.forward):
             raise ValueError("inward, down and forward need scale: two labels to measure by")
+        if self.plane and len(set(self.plane)) < max(3, len(self.plane)):
+            raise ValueError(
+                f"plane has {', '.join(self.plane)}; it needs three or more labels, each once"
+            )
+        if any(self.offset_m) and not self.plane:
+            raise ValueError("offset_m needs plane: labels that tell its directions")
         return self
 
 
@@ -240,7 +254,7 @@ def model_schema() -> dict[str, Any]:
 
 def _landmark(found: _Landmark) -> Landmark:
     values = found.model_dump()
-    return Landmark(spread=values.pop("spread_m"), **values)
+    return Landmark(spread=values.pop("spread_m"), offset=values.pop("offset_m"), **values)
 
 
 def _landmark_dict(landmark: Landmark) -> dict[str, Json]:
@@ -250,6 +264,8 @@ def _landmark_dict(landmark: Landmark) -> dict[str, Json]:
         "inward": landmark.inward,
         "down": landmark.down,
         "forward": landmark.forward,
+        "plane": list(landmark.plane),
+        "offset_m": list(landmark.offset),
         "spread_m": landmark.spread,
         "source": landmark.source,
     }

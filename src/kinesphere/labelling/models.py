@@ -5,10 +5,15 @@ Where the numbers of their landmarks come from; all are along the axes of the st
 Hips
     Harrington et al. 2007 in the plane of ASIS and PSIS, with PW the distance of the ASIS and PD
     that of their middle from the PSIS': 0.24 PD + 9.9 mm back, 0.30 PW + 10.9 mm down, 0.33 PW +
-    7.3 mm to the side. The constants are spread over a pelvis of PW 238 mm and PD 155 mm: 0.304 PD,
-    0.346 PW, 0.361 PW; back and side are weights of the markers, down is turned by the 12° by which
-    the plane dips to the front in standing. Without PSIS: Bell et al. 1989, 14 % of PW inward, 30 %
-    down, 22 % back. Against functional centres of two hips: 8 and 12 mm.
+    7.3 mm to the side. `plugin-gait` has it so. Its spread of 9 mm in each direction is what people
+    deviate (as others quote it 5.2 mm back, 3.6 down, 3.2 aside where one was left out; Hara et al.
+    2016, doi:10.1038/srep37707, alike: 5.2, 4.4, 3.8) with skin and how markers are put on:
+    12.3 ± 5.9 mm in all on CT scans (Mantovani et al. 2016, Gait & Posture 44, 48-54), 8 mm in each
+    direction.
+    In `cmu41` markers are at the waist: the constants are spread over a pelvis of PW 238 mm and PD
+    155 mm: 0.304 PD, 0.346 PW, 0.361 PW; back and side are weights of the markers, down is turned
+    by the 12° by which the plane dips to the front in standing. Without PSIS: Bell et al. 1989,
+    14 % of PW inward, 30 % down, 22 % back.
 Lumbar, neck
     Reed et al. 1999, the men's numbers as quoted by Dumas et al. 2007
     (doi:10.1016/j.jbiomech.2006.02.013): L5/S1 26 to 29 % of PW behind and 13 to 17 % above the

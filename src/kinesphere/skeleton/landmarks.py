@@ -1,9 +1,12 @@
 """Where a joint centre is expected before the motion has its say."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from kinesphere.data import Array, JointModel, Landmark
 from kinesphere.geometry.rigid import into_frame
+from kinesphere.skeleton.anatomy import in_plane
 from kinesphere.skeleton.averages import mean_seen, median_seen
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import beside
@@ -25,9 +28,23 @@ OWN_POSE = 3
 """Markers that give a pose."""
 
 
+class Expected(NamedTuple):
+    """Where a joint centre is expected."""
+
+    centre: Array
+    """(3,) m, in the parent's frame."""
+    spread: float
+    """m, how far off it may be."""
+    source: str
+    """Where it comes from, for a person."""
+    anatomy: bool = False
+    """Whether it is a point of bone whose spread was measured on people: to be weighed with what
+    the motion tells, not only to hold what that leaves open."""
+
+
 def expected_centre(
     joint: JointModel, parent: Body, sample: dict[str, Array], child_labels: tuple[str, ...]
-) -> tuple[Array, float, str]:
+) -> Expected:
     """Return the expected joint centre in the parent's frame.
 
     Parameters
@@ -36,16 +53,10 @@ def expected_centre(
         Label → (n_sample, 3) m, every marker of the recording in the sampled frames.
     child_labels
         The child's own markers.
-
-    Returns
-    -------
-    centre : (3,) m
-    spread : m
-    source : where it comes from, for a person
     """
     for landmark in joint.landmarks:
         if found := _landmark(landmark, joint, parent, sample):
-            return *found, landmark.source or "landmark"
+            return Expected(*found, landmark.source or "landmark", bool(landmark.plane))
     cloud = np.stack([sample[label] for label in child_labels], axis=1)
     child = median_seen(mean_seen(into_frame(parent.rotations, parent.shifts, cloud), axis=1))
     own = np.nan_to_num(mean_seen(parent.shape))
@@ -54,7 +65,7 @@ def expected_centre(
     few = _few(parent, child_labels)
     share = NO_LANDMARK_FIRM if joint.n_axes == 1 or few else NO_LANDMARK_SHARE
     spread = max(share * float(np.linalg.norm(child - own)), 0.02)
-    return (child + own) / 2, spread, BETWEEN
+    return Expected((child + own) / 2, spread, BETWEEN)
 
 
 def expected_off(source: str, parent: Body, child_labels: tuple[str, ...]) -> float:
@@ -69,9 +80,12 @@ def _few(parent: Body, child_labels: tuple[str, ...]) -> bool:
 def _landmark(
     landmark: Landmark, joint: JointModel, parent: Body, sample: dict[str, Array]
 ) -> tuple[Array, float] | None:
-    needed = {*landmark.weights, *(landmark.scale or ())}
+    needed = {*landmark.weights, *(landmark.scale or ()), *landmark.plane}
     if not needed <= sample.keys():
         return None
+    if landmark.plane:
+        point = in_plane(landmark, parent, sample, _inward_by_name(joint))
+        return None if point is None else (point, landmark.spread)
     world = np.sum([w * sample[label] for label, w in landmark.weights.items()], axis=0)
     local = into_frame(parent.rotations, parent.shifts, world[:, None])[:, 0]
     if not np.isfinite(local).all(axis=1).any():
@@ -99,7 +113,14 @@ def _landmark(
 
 def inward_sign(joint: JointModel, point: Array, parent: Body, right: Array) -> float:
     """Return +1 where the middle of the body lies to the right of a point, −1 to its left."""
+    return _inward_by_name(joint) or (
+        -1.0 if (point - mean_seen(parent.shape)) @ right > 0 else 1.0
+    )
+
+
+def _inward_by_name(joint: JointModel) -> float:
+    """Return +1 on the left, −1 on the right, 0 where the joint's names tell no side."""
     for name in (joint.child, joint.name):
         if name.startswith(("left_", "right_")):
             return 1.0 if name.startswith("left_") else -1.0
-    return -1.0 if (point - mean_seen(parent.shape)) @ right > 0 else 1.0
+    return 0.0

@@ -16,6 +16,7 @@ from kinesphere.skeleton.linked_joint import LinkedJoint
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud
 from kinesphere.skeleton.settings import SkeletonSettings
+from kinesphere.skeleton.weighing import LOOSELY, UNLIKE, weighed
 
 STRAYS = 0.75
 """Share of `SkeletonSettings.undetermined_mm` that a limb's markers may stray in each direction on
@@ -52,7 +53,10 @@ def find_joint(
         The joint as a group of limbs has it; then it is there.
     """
     own = cloud(labels, sample)
-    expected, spread, source = expected_centre(joint, parent, sample, labels)
+    at = expected_centre(joint, parent, sample, labels)
+    weigh = at.anatomy and settings.weigh_anatomy
+    may_be_off = UNLIKE * at.spread if at.anatomy and not weigh else at.spread
+    spread = LOOSELY * at.spread if weigh else may_be_off
     outlier, min_spread = settings.outlier_mm * 1e-3, settings.min_spread_mm * 1e-3
     solid = measure_shape(own, outlier, min_spread) if len(labels) > 2 else None
     usual = float(np.sqrt(np.mean(parent.noise**2)) if solid is None else 0.0)
@@ -67,9 +71,9 @@ def find_joint(
         )
         fit = fit_centre(
             view,
-            expected,
+            at.centre,
             spread,
-            off=expected_off(source, parent, labels),
+            off=expected_off(at.source, parent, labels),
             hidden=settings.soft_tissue,
             hinge=parent.right if joint.n_axes == 1 else None,
             tighter=settings.hinge,
@@ -77,7 +81,12 @@ def find_joint(
     strays = max(float(np.mean(one)) for one in (parent.noise, noise))
     if strays > STRAYS * settings.undetermined_mm * 1e-3:
         fit = untold(fit, spread)  # what is no body has no joint that its motion could tell
-    return FoundJoint(MeasuredJoint(joint, fit, expected, spread, source), own, noise, solid)
+    alone = fit.centre
+    if weigh:
+        fit = weighed(fit, at.centre, at.spread)
+    drawn = float(np.linalg.norm(fit.centre - alone))
+    measured = MeasuredJoint(joint, fit, at.centre, may_be_off, at.source, drawn)
+    return FoundJoint(measured, own, noise, solid)
 
 
 def _turning(

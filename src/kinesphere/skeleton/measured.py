@@ -20,6 +20,8 @@ class MeasuredJoint:
     """m, how far off the expectation may be."""
     source: str
     """Where the expectation comes from."""
+    drawn: float = 0.0
+    """m, how far anatomy has drawn the centre from where the motion alone has it."""
 
     @property
     def off(self) -> float:

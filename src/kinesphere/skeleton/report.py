@@ -17,6 +17,9 @@ ROUNDING = 1e-13
 VERDICT_NOISE = 5e-4
 """m, least noise the verdict on a centre reckons with: no recording is better than that."""
 
+SAID = 0.5e-3
+"""m, least way that anatomy has drawn a centre that a person is told of."""
+
 
 def describe_joint(
     measured: MeasuredJoint, parent: Poses, child: Poses, body: Body, settings: SkeletonSettings
@@ -81,7 +84,11 @@ def verdict_on(
             f"range of motion {degrees:.0f}°, centre open along one axis "
             f"(± {min(deviations[-1], 9.999) * 1e3:.0f} mm), there {placed}"
         )
-    return "determined", f"range of motion {degrees:.0f}°"
+    note = f"range of motion {degrees:.0f}°"
+    if measured.drawn >= SAID:
+        drawn = f"drawn {measured.drawn * 1e3:.0f} mm towards where it is expected"
+        note = f"{note}, {drawn} ({measured.source})"
+    return "determined", note
 
 
 def describe_limb(body: Body, joints: dict[str, MeasuredJoint]) -> Limb:

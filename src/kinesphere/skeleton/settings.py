@@ -93,6 +93,13 @@ class SkeletonSettings:
         source="5 mm of either marker of a pair shift and tilt the plane by 5 and 4 mm at the hip, "
         "beside a few mm that people's sides differ by",
     )
+    weigh_anatomy: bool = setting(
+        True,
+        "weigh hips by the motion with where the pelvis' spines have them, each as sure as it is; "
+        "false leaves to anatomy what motion leaves open: for hips unlike other people's",
+        source="Harrington et al. 2007, doi:10.1016/j.jbiomech.2006.02.003: regression within 3 to "
+        "5 mm in each direction; with skin and markers 8 to 9",
+    )
     adopt_markers: bool = setting(
         True, "let markers the model does not know join the limb they are rigid with"
     )
