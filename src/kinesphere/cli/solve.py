@@ -81,9 +81,17 @@ def solve(
     from kinesphere import pipeline
     from kinesphere.cli.console import print_json, progress_bar, stdout
     from kinesphere.cli.describe_solution import describe_solution, show_solution
-    from kinesphere.cli.files import REPORT, read_all_solved, read_recording, write_solved
+    from kinesphere.cli.files import (
+        REPORT,
+        check_apart,
+        read_all_solved,
+        read_recording,
+        write_solved,
+    )
     from kinesphere.io import check_solution_place
 
+    model_file = Path(model) if model is not None and Path(model).is_file() else None
+    check_apart(output, file, *(calibration_from or ()), model_file, settings_file)
     settings = settings_from_options(assignments, settings_file)
     check_solution_place(output, [REPORT])
     with progress_bar(quiet=as_json) as progress:

@@ -35,7 +35,7 @@ from kinesphere.parameterization.report import (
     stage_warnings,
     told,
 )
-from kinesphere.parameterization.reused import misfit, not_reused, own_or_reused
+from kinesphere.parameterization.reused import not_reused, own_or_reused
 from kinesphere.parameterization.settings import (
     ParameterizationSettings,
 )
@@ -63,7 +63,7 @@ def parameterize(
         there. None takes the whole motion.
     reuse
         A parameterized skeleton of the same person; joints of the same name take its axes and rest
-        orientations.
+        orientations, unless they are doubtful there or plainly wrong here and own ones are not.
 
     Returns
     -------
@@ -110,8 +110,6 @@ def parameterize(
         )
         fit = own_or_reused(view, reuse, settings)
         solved = solve_joint(view, fit.axes, fit.rest, settings)
-        if fit.source == "reused":
-            fit = replace(fit, misfit=misfit(view, solved, settings))
         rebuilt = joint_rotations(fit.axes, fit.rest, limb.long_axis, solved.angles, solved.twists)
         mid_point = lever(joint.centre_in_child, limb.length, limb.long_axis)
         angles[:, j], twists[:, j] = solved.angles, solved.twists
@@ -147,7 +145,7 @@ def parameterize(
     warnings = stage_warnings(seen, fits, settings.axes.method)
     warnings += reach_warnings(fits, findings, settings.angles.unreachable)
     own = [name for name, fit in fits.items() if fit.source != "reused"]
-    warnings += not_reused(own, reuse)
+    warnings += not_reused([name for name in own if not fits[name].gave_way], reuse)
     if (
         reuse is not None
         and len(own) < len(fits)

@@ -84,7 +84,6 @@ def parameterized(
         reuse, apart = with_best_axes(motion.skeleton, others, settings.axes)
         found |= {
             "recordings": [*sorted(other.name for other in others)],
-            "axes_from": {j.name: _origins(j.axes_reused_from) for j in reuse.joints if j.n_axes},
         }
         found["frames_by_name"] = by_name = reuse.history[-1].findings["frames_by_name"]
         if named := named_frames(by_name):
@@ -101,7 +100,28 @@ def parameterized(
     if found:
         step = Step("calibration", {}, found, doubts, __version__)
         motion = replace(motion, history=(*motion.history, step))
-    return parameterize(motion, settings, calibration=calibration, reuse=reuse)
+    parameters = parameterize(motion, settings, calibration=calibration, reuse=reuse)
+    return parameters if reuse is None else _with_origins(parameters)
+
+
+def _with_origins(parameters: Parameters) -> Parameters:
+    """Return parameters whose calibration step says from where the axes are that serve in the end.
+
+    What is known best of other recordings may still give way to what this one tells.
+    """
+    skeleton = parameters.skeleton
+    origins: dict[str, Json] = {
+        joint.name: _origins(joint.axes_reused_from)
+        for joint in skeleton.joints
+        if any(joint.axes_reused_from)
+    }
+    history = tuple(
+        replace(step, findings={**step.findings, "axes_from": origins})
+        if step.name == "calibration"
+        else step
+        for step in parameters.history
+    )
+    return replace(parameters, skeleton=replace(skeleton, history=history), history=history)
 
 
 def _origins(names: Sequence[str]) -> Json:
