@@ -12,6 +12,7 @@ from kinesphere.parameterization import ParameterizationSettings, parameterize
 from kinesphere.pipeline.best_axes import Calibrated, with_best_axes
 from kinesphere.pipeline.carried_over import named_frames
 from kinesphere.pipeline.doubts import calibration_doubts
+from kinesphere.pipeline.numbered import as_numbered_in
 
 Source: TypeAlias = Solution | Skeleton
 """Another recording of the same person, solved."""
@@ -73,7 +74,8 @@ def parameterized(
     DegenerateMotion, BadSetting
         As `kinesphere.parameterization.parameterize` does.
     """
-    doubts = calibration_doubts(motion, calibration, others)
+    others, numbered, unmatched = _as_numbered_in(motion.skeleton, others)
+    doubts = calibration_doubts(motion, calibration, others) + unmatched
     found: dict[str, Json] = {}
     if calibration is not None and doubts:
         length = motion.n_frames / motion.rate
@@ -85,6 +87,8 @@ def parameterized(
         found |= {
             "recordings": [*sorted(other.name for other in others)],
         }
+        if numbered:
+            found["joints_by_markers"] = numbered
         found["frames_by_name"] = by_name = reuse.history[-1].findings["frames_by_name"]
         if named := named_frames(by_name):
             doubts += (
@@ -102,6 +106,24 @@ def parameterized(
         motion = replace(motion, history=(*motion.history, step))
     parameters = parameterize(motion, settings, calibration=calibration, reuse=reuse)
     return parameters if reuse is None else _with_origins(parameters)
+
+
+def _as_numbered_in(
+    skeleton: Skeleton, others: Sequence[Calibrated]
+) -> tuple[tuple[Calibrated, ...], dict[str, Json], tuple[str, ...]]:
+    """Return recordings with joints numbered as here, which are which, and what is left over."""
+    called, numbered, left = [], {}, []
+    for other in sorted(others, key=lambda one: one.name):
+        same, matched, unmatched = as_numbered_in(skeleton, other)
+        called.append(same)
+        if matched:
+            numbered[other.name] = dict(matched)
+        left += [f"{joint} of {other.name} ({why})" for joint, why in unmatched.items()]
+    doubts = (
+        "joints without a name are the same where they join limbs of the same markers; axes of "
+        f"these are not reused: {', '.join(left)}",
+    )
+    return tuple(called), numbered, doubts if left else ()
 
 
 def _with_origins(parameters: Parameters) -> Parameters:
