@@ -112,18 +112,22 @@ def _as_numbered_in(
     skeleton: Skeleton, others: Sequence[Calibrated]
 ) -> tuple[tuple[Calibrated, ...], dict[str, Json], tuple[str, ...]]:
     """Return recordings with joints numbered as here, which are which, and what is left over."""
-    called, numbered, left = [], {}, []
+    called: list[Calibrated] = []
+    numbered: dict[str, Json] = {}
+    left: list[str] = []
     for other in sorted(others, key=lambda one: one.name):
         same, matched, unmatched = as_numbered_in(skeleton, other)
         called.append(same)
         if matched:
-            numbered[other.name] = dict(matched)
+            numbered[other.name] = {**matched}
         left += [f"{joint} of {other.name} ({why})" for joint, why in unmatched.items()]
-    doubts = (
+    if not left:
+        return tuple(called), numbered, ()
+    said = (
         "joints without a name are the same where they join limbs of the same markers; axes of "
-        f"these are not reused: {', '.join(left)}",
+        f"these are not reused: {', '.join(left)}"
     )
-    return tuple(called), numbered, doubts if left else ()
+    return tuple(called), numbered, (said,)
 
 
 def _with_origins(parameters: Parameters) -> Parameters:
