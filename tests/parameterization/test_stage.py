@@ -483,7 +483,7 @@ def test_doubts_about_reused_axes_stay_doubts(performance, solved):
     """Where nothing moves there is nothing better."""
     reuse = doubtful(solved, "left_knee", "the moon was full")
     still = cut(performance.motion, slice(20))
-    again = parameterize(still, reuse=reuse)
+    again = parameterize(still, reuse=reuse, give_way=True)
     found, before = findings(again, "left_knee"), findings(solved, "left_knee")
     assert found["doubts"] == ["the moon was full"]
     assert found["halves_disagreement_deg"] == before["halves_disagreement_deg"]
@@ -505,7 +505,8 @@ def test_doubtful_axes_give_way_to_what_is_told_without_doubt(performance, solve
         replace(joint, axes=joint.axes @ askew.T) if joint.name == "left_knee" else joint
         for joint in reuse.joints
     )
-    again = parameterize(performance.motion, reuse=replace(reuse, joints=joints))
+    asked = replace(reuse, joints=joints)
+    again = parameterize(performance.motion, reuse=asked, give_way=True)
     for joint in again.skeleton.joints:
         own = joint.name == "left_knee"
         assert joint.axes_source == ("movement" if own else "reused")
@@ -514,6 +515,8 @@ def test_doubtful_axes_give_way_to_what_is_told_without_doubt(performance, solve
     assert "left_knee (doubtful where they come from" in said
     assert "left_knee" not in "".join(w for w in again.history[-1].warnings if w != said)
     assert "doubtful where" in findings(again, "left_knee")["not_reused"]
+    kept = parameterize(performance.motion, reuse=asked)  # whoever asks for these has them
+    assert {joint.axes_source for joint in kept.skeleton.joints} == {"reused"}
 
 
 def turned_off(skeleton, radians, *names):
@@ -530,7 +533,7 @@ def turned_off(skeleton, radians, *names):
 def test_reused_axes_that_do_not_fit_are_named(performance):
     """Of the functional trial that somebody chose they serve all the same, as long as it can be."""
     reuse = turned_off(performance.skeleton, 0.15, "left_knee", "left_hip")
-    solved = parameterize(performance.motion, reuse=reuse)
+    solved = parameterize(performance.motion, reuse=reuse, give_way=True)
     told = solved.history[-1].warnings
     (misfit,) = (w for w in told if "do not fit this recording" in w)
     assert "left_knee (out of their reach in " in misfit
@@ -540,7 +543,7 @@ def test_reused_axes_that_do_not_fit_are_named(performance):
 
 def test_undoubted_axes_give_way_where_they_ruin_a_joint(performance, solved):
     reuse = turned_off(performance.skeleton, 0.6, "left_knee")
-    again = parameterize(performance.motion, reuse=reuse)
+    again = parameterize(performance.motion, reuse=reuse, give_way=True)
     (said,) = (w for w in again.history[-1].warnings if "give way" in w)
     assert "left_knee (out of their reach in " in said
     assert "right_knee" not in said

@@ -28,7 +28,12 @@ class _Miss(NamedTuple):
 
 
 def there_or_own(
-    there: JointFit, own: JointFit | None, view: JointView, settings: ParameterizationSettings
+    there: JointFit,
+    own: JointFit | None,
+    view: JointView,
+    settings: ParameterizationSettings,
+    *,
+    give_way: bool,
 ) -> JointFit:
     """Return axes from another recording, or those from here where the former had better not serve.
 
@@ -46,8 +51,10 @@ def there_or_own(
         From another recording, in the frames of this one.
     own
         As this recording tells them; None to have them found, if they are needed.
+    give_way
+        False for those from there in any case; where they do not fit, they say so (``misfit``).
     """
-    doubtful = there.half_told or _doubted(there)
+    doubtful = give_way and (there.half_told or _doubted(there))
     theirs = _miss(there, view, settings)
     if not doubtful and theirs.share <= OUT_OF_REACH:
         return there
@@ -60,7 +67,7 @@ def there_or_own(
         f"{np.rad2deg(theirs.rms):.1f}° rms off instead of {np.rad2deg(ours.rms):.1f}° by its own"
     )
     within = ours.share <= OUT_OF_REACH
-    wrong = far and within and theirs.share > LARGELY and theirs.rms > WRONG
+    wrong = give_way and far and within and theirs.share > LARGELY and theirs.rms > WRONG
     why = []
     if doubtful and (far or _surer(own, there)):
         why.append("doubtful where they come from")

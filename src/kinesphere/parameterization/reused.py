@@ -67,11 +67,15 @@ def reused_fit(name: str, reuse: Skeleton | None) -> JointFit | None:
 
 
 def own_or_reused(
-    view: JointView, reuse: Skeleton | None, settings: ParameterizationSettings
+    view: JointView,
+    reuse: Skeleton | None,
+    settings: ParameterizationSettings,
+    *,
+    give_way: bool = False,
 ) -> JointFit:
     """Return a joint's axes from another solution, or from its own movement if that tells more.
 
-    Or where those from there are doubtful or plainly wrong here (`there_or_own`). What was only
+    With ``give_way`` also where those from there are doubtful or plainly wrong (`there_or_own`). What was only
     assumed there may be measured here: of two axes that alone, beside the other from there, where
     the limb can be followed about the two.
     """
@@ -79,12 +83,14 @@ def own_or_reused(
     if there is None:
         return fit_axes(view, settings)
     if not there.half_told:
-        return there_or_own(there, None, view, settings)
+        return there_or_own(there, None, view, settings, give_way=give_way)
     own = fit_axes(view, settings)
     if own.n_told > there.n_told:
         return own
     both = _with_own(there, own, view, settings)
-    return there_or_own(there, own, view, settings) if both is None else both
+    if both is not None:
+        return both
+    return there_or_own(there, own, view, settings, give_way=give_way)
 
 
 def _with_own(

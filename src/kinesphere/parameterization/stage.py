@@ -47,6 +47,8 @@ def parameterize(
     settings: ParameterizationSettings | None = None,
     calibration: tuple[float, float] | None = None,
     reuse: Skeleton | None = None,
+    *,
+    give_way: bool = False,
 ) -> Parameters:
     """Describe a normalized motion by angles about the axes the person moves around.
 
@@ -63,7 +65,10 @@ def parameterize(
         there. None takes the whole motion.
     reuse
         A parameterized skeleton of the same person; joints of the same name take its axes and rest
-        orientations, unless they are doubtful there or plainly wrong here and own ones are not.
+        orientations.
+    give_way
+        Whether those that are doubtful, or plainly wrong for this motion, give way to its own
+        (`kinesphere.parameterization.giving_way`); else that is only said.
 
     Returns
     -------
@@ -108,7 +113,7 @@ def parameterize(
             human,
             neighbours=neighbours[j],
         )
-        fit = own_or_reused(view, reuse, settings)
+        fit = own_or_reused(view, reuse, settings, give_way=give_way)
         solved = solve_joint(view, fit.axes, fit.rest, settings)
         rebuilt = joint_rotations(fit.axes, fit.rest, limb.long_axis, solved.angles, solved.twists)
         mid_point = lever(joint.centre_in_child, limb.length, limb.long_axis)

@@ -104,7 +104,7 @@ def parameterized(
     if found:
         step = Step("calibration", {}, found, doubts, __version__)
         motion = replace(motion, history=(*motion.history, step))
-    parameters = parameterize(motion, settings, calibration=calibration, reuse=reuse)
+    parameters = parameterize(motion, settings, calibration=calibration, reuse=reuse, give_way=True)
     return parameters if reuse is None else _with_origins(parameters)
 
 
