@@ -51,7 +51,8 @@ def solve(
             help="Take axes and rest positions from a solved recording of the same person, as they "
             "lie beside the markers. Given several times (a functional trial for each joint or "
             "axis), in any order, every axis comes from where it is known best, and contradictions "
-            "are told.",
+            "are told. Axes that are doubtful there, or plainly wrong here, give way to the "
+            "recording's own where those are better, and that is said.",
         ),
     ] = None,
     facing: Annotated[

@@ -75,9 +75,9 @@ def own_or_reused(
 ) -> JointFit:
     """Return a joint's axes from another solution, or from its own movement if that tells more.
 
-    With ``give_way`` also where those from there are doubtful or plainly wrong (`there_or_own`). What was only
-    assumed there may be measured here: of two axes that alone, beside the other from there, where
-    the limb can be followed about the two.
+    With ``give_way`` also where those from there are doubtful or plainly wrong (`there_or_own`).
+    What was only assumed there may be measured here: of two axes that alone, beside the other from
+    there, where the limb can be followed about the two.
     """
     there = reused_fit(view.name, reuse)
     if there is None:
