@@ -1,15 +1,18 @@
 """What the line says before its stages can notice that something is off."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
+from benchmarks.accuracy.one_movement import ALL, DISTAL, NONE, one_movement
 
 from kinesphere.data import Recording, Step
 from kinesphere.errors import BadRecording, DegenerateMotion
 from kinesphere.pipeline import settings_from, solve
-from kinesphere.pipeline.doubts import with_checks
+from kinesphere.pipeline.doubts import OTHER_PERSON, lengths_apart, with_checks
 from kinesphere.pipeline.motion_alone import _with_names_doubted
+from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 from kinesphere.synthetic import make_performance
 
 
@@ -115,6 +118,55 @@ def test_axes_of_a_body_of_another_size_are_doubted(performance, solution):
     assert not [w for w in mine.warnings if "one person only" in w]
     other = solve(scaled(performance.recording, 1.15), calibration_from=solution)
     assert any("limbs differ by 15% (median)" in w for w in other.warnings)
+
+
+def test_a_length_nobody_measured_tells_no_person(solution):
+    """Centres between the markers are elsewhere in every trial; landmarks and motion are not."""
+    skeleton = solution.skeleton
+    longer = replace(
+        skeleton, limbs=tuple(replace(limb, length=1.1 * limb.length) for limb in skeleton.limbs)
+    )
+    assert lengths_apart(skeleton, skeleton) == 0.0
+    assert lengths_apart(skeleton, longer) == pytest.approx(1 - 1 / 1.1)
+
+    def guessed(*names, place=BETWEEN, observability="undetermined"):
+        return replace(
+            longer,
+            joints=tuple(
+                replace(joint, observability=observability, note=f"placed by expectation ({place})")
+                if joint.name in names
+                else replace(joint, observability="determined", note="")
+                for joint in longer.joints
+            ),
+        )
+
+    every = skeleton.joint_names
+    assert lengths_apart(skeleton, guessed("left_knee")) == pytest.approx(1 - 1 / 1.1)
+    assert lengths_apart(guessed(*every), skeleton) is None
+    assert lengths_apart(skeleton, guessed(*every, place=STEADY)) is None
+    assert lengths_apart(skeleton, guessed(*every, observability="hinge")) is None
+    told = lengths_apart(skeleton, guessed(*every, place="middle of the epicondyle markers"))
+    assert told == pytest.approx(1 - 1 / 1.1)
+    thigh = guessed("left_knee")
+    off = {"left_thigh": 1.5, "left_shank": 1.5}
+    limbs = tuple(
+        replace(limb, length=off.get(limb.name, 1.0) * its.length)
+        for limb, its in zip(thigh.limbs, skeleton.limbs, strict=True)
+    )
+    assert lengths_apart(skeleton, replace(thigh, limbs=limbs)) == 0.0
+
+
+@pytest.mark.slow
+def test_one_person_is_one_person_whatever_a_trial_moves():
+    """The truth is one actor, whom a trial about one axis of each joint measures 9–13 % off."""
+    layout = make_performance(np.random.default_rng(710), rate=12.0, calibration_s=60.0, free_s=0.0)
+    trials = [one_movement(layout, about, 4.0, 9 + about) for about in (DISTAL, NONE, ALL)]
+    skeletons = [solve(trial, layout.model).skeleton for trial in trials]
+    for one, other in combinations(skeletons, 2):
+        off = lengths_apart(one, other)
+        assert off is None or off < OTHER_PERSON
+    taller = solve(scaled(trials[-1], 1.1), layout.model).skeleton
+    assert lengths_apart(skeletons[-1], taller) > OTHER_PERSON
 
 
 # --- names of a body that never stands ---

@@ -237,6 +237,14 @@ def test_solve_in_words_and_again_with_reused_axes(solved, call, trc, tmp_path):
     measured = [joint.axes_source == "movement" for joint in before.joints]
     assert [bool(joint["axes_reused_from"]) for joint in told] == measured
     assert f"reused from {folder.name}" in (again / "report.html").read_text()
+    before = (folder / "solution.npz").read_bytes()
+    for source in (trc, folder / "recording.c3d"):
+        onto = call("solve", source, "-o", folder, "--calibration-from", folder, "--model", "cmu41")
+        assert onto.code == 2
+        assert f"{folder} is read from; name another place" in onto.err
+    onto = call("solve", folder / "recording.c3d", "-o", folder, "--model", "cmu41")
+    assert onto.code == 2
+    assert (folder / "solution.npz").read_bytes() == before
     method = ["--set", "axes.method=body", "--calibration-from", folder]
     failed = call("solve", trc, "-o", tmp_path / "no", *method, "--model", "cmu41")
     assert failed.code == 2

@@ -159,6 +159,11 @@ def test_what_cannot_be_meant_is_said_before_tracking(call, scene, tmp_path, mon
         assert shown.code == 2
         assert said in shown.err
         assert len(shown.error_lines) == 1
+    (tmp_path / "calibration").mkdir()
+    onto = ("-o", tmp_path / "calibration", "--calibration-from", tmp_path / "calibration")
+    shown = call("track", scene, *onto)
+    assert shown.code == 2
+    assert "calibration is read from; name another place" in shown.err
 
 
 def test_a_scene_that_does_not_fit_is_one_line(call, scene, tmp_path):

@@ -98,6 +98,7 @@ def test_who_loses_axes_is_told_why_and_what_to_do():
         loose="",
         added="",
         misfit="",
+        gave_way="",
         assumed=(),
         half_told=False,
     )
@@ -116,6 +117,7 @@ def test_that_the_bodys_axes_are_farther_off_is_said_only_where_they_are():
         loose="axes from two halves of the data differ by 15°",
         added="",
         misfit="",
+        gave_way="",
         assumed=(),
         half_told=False,
     )

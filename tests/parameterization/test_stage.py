@@ -469,39 +469,88 @@ def test_axes_that_were_only_assumed_are_not_reused(performance):
     )
 
 
-def test_doubts_about_reused_axes_stay_doubts(performance, solved):
+def doubtful(solved, joint, *doubts):
+    """Return a solved skeleton whose history doubts the axes of one joint."""
     step = solved.history[-1]
     told = {name: dict(found) for name, found in step.findings["joints"].items()}
-    told["left_knee"]["doubts"] = ["the moon was full"]
-    doubted = replace(step, findings={"joints": told})
-    reuse = replace(solved.skeleton, history=(*solved.history[:-1], doubted))
-    again = parameterize(performance.motion, reuse=reuse)
-    found = findings(again, "left_knee")
+    told[joint]["doubts"] = list(doubts)
+    return replace(
+        solved.skeleton, history=(*solved.history[:-1], replace(step, findings={"joints": told}))
+    )
+
+
+def test_doubts_about_reused_axes_stay_doubts(performance, solved):
+    """Where nothing moves there is nothing better."""
+    reuse = doubtful(solved, "left_knee", "the moon was full")
+    still = cut(performance.motion, slice(20))
+    again = parameterize(still, reuse=reuse, give_way=True)
+    found, before = findings(again, "left_knee"), findings(solved, "left_knee")
     assert found["doubts"] == ["the moon was full"]
-    assert found["halves_disagreement_deg"] == told["left_knee"]["halves_disagreement_deg"]
+    assert found["halves_disagreement_deg"] == before["halves_disagreement_deg"]
     assert "phases_s" not in found  # those were seconds of another recording
     assert any(
         "doubtful where they come from: " in w and "left_knee (the moon was full)" in w
         for w in again.history[-1].warnings
     )
     assert not any("do not fit" in w for w in again.history[-1].warnings)
-    thrice = parameterize(performance.motion, reuse=again.skeleton)
+    thrice = parameterize(still, reuse=again.skeleton)
     assert findings(thrice, "left_knee")["doubts"] == ["the moon was full"]
 
 
-def test_reused_axes_that_do_not_fit_are_named(performance):
-    wrong = Rotation.from_rotvec([0.6, 0.0, 0.0]).as_matrix()
+def test_doubtful_axes_give_way_to_what_is_told_without_doubt(performance, solved):
+    """The truth: 30° beside it at the knee that is doubted, and nothing but that knee changes."""
+    reuse = doubtful(solved, "left_knee", "the moon was full")
+    askew = rotation_about(np.array([0.0, 1.0, 0.0]), np.deg2rad(30.0))
+    joints = tuple(
+        replace(joint, axes=joint.axes @ askew.T) if joint.name == "left_knee" else joint
+        for joint in reuse.joints
+    )
+    asked = replace(reuse, joints=joints)
+    again = parameterize(performance.motion, reuse=asked, give_way=True)
+    for joint in again.skeleton.joints:
+        own = joint.name == "left_knee"
+        assert joint.axes_source == ("movement" if own else "reused")
+        assert_allclose(joint.axes, solved.skeleton.joint(joint.name).axes, atol=1e-12)
+    (said,) = (w for w in again.history[-1].warnings if "give way" in w)
+    assert "left_knee (doubtful where they come from" in said
+    assert "left_knee" not in "".join(w for w in again.history[-1].warnings if w != said)
+    assert "doubtful where" in findings(again, "left_knee")["not_reused"]
+    kept = parameterize(performance.motion, reuse=asked)  # whoever asks for these has them
+    assert {joint.axes_source for joint in kept.skeleton.joints} == {"reused"}
+
+
+def turned_off(skeleton, radians, *names):
+    wrong = Rotation.from_rotvec([radians, 0.0, 0.0]).as_matrix()
     joints = tuple(
         replace(joint, rest=wrong @ joint.rest, axes=joint.axes @ wrong)
-        if joint.name in ("left_knee", "left_hip")
+        if joint.name in names
         else joint
-        for joint in performance.skeleton.joints
+        for joint in skeleton.joints
     )
-    reuse = Skeleton(performance.skeleton.limbs, joints)
-    told = parameterize(performance.motion, reuse=reuse).history[-1].warnings
+    return Skeleton(skeleton.limbs, joints)
+
+
+def test_reused_axes_that_do_not_fit_are_named(performance):
+    """Of the functional trial that somebody chose they serve all the same, as long as it can be."""
+    reuse = turned_off(performance.skeleton, 0.15, "left_knee", "left_hip")
+    solved = parameterize(performance.motion, reuse=reuse, give_way=True)
+    told = solved.history[-1].warnings
     (misfit,) = (w for w in told if "do not fit this recording" in w)
     assert "left_knee (out of their reach in " in misfit
     assert "right_knee" not in misfit
+    assert solved.skeleton.joint("left_knee").axes_source == "reused"
+
+
+def test_undoubted_axes_give_way_where_they_ruin_a_joint(performance, solved):
+    reuse = turned_off(performance.skeleton, 0.6, "left_knee")
+    again = parameterize(performance.motion, reuse=reuse, give_way=True)
+    (said,) = (w for w in again.history[-1].warnings if "give way" in w)
+    assert "left_knee (out of their reach in " in said
+    assert "right_knee" not in said
+    knee = again.skeleton.joint("left_knee")
+    assert knee.axes_source == "movement"
+    assert_allclose(knee.axes, solved.skeleton.joint("left_knee").axes, atol=1e-12)
+    assert again.skeleton.joint("right_knee").axes_source == "reused"
 
 
 def test_what_does_not_apply_is_said(performance):

@@ -33,7 +33,7 @@ def edit(
     from kinesphere.io import check_solution_place, read_edits
     from kinesphere.report import counted
 
-    check_apart(output, directory)
+    check_apart(output, directory, apply)
     check_solution_place(output, [REPORT])
     edits = read_edits(apply)
     solution = apply_edits(read_solved(directory), edits)

@@ -45,10 +45,15 @@ def read_all_solved(folders: Iterable[Path]) -> dict[str, Solution]:
 
 
 def check_apart(output: Path, *sources: Path | None) -> None:
-    """Raise if the result would be written over something it is made from."""
+    """Raise if the result would be written over something it is made from.
+
+    That is itself, or a folder it lies in: solved folders are replaced as a whole.
+    """
+    there = output.resolve()
     for source in sources:
-        there = source is not None and output.exists() and source.exists()
-        if there and output.samefile(source):  # type: ignore[arg-type]
+        if source is None or not output.exists() or not source.exists():
+            continue
+        if output.samefile(source) or there in source.resolve().parents:
             raise BadArgument(f"{output} is read from; name another place for the result")
 
 

@@ -79,7 +79,7 @@ def retarget(
 
     if (onto is None) == (height is None):
         raise BadArgument("name either --onto RIG or --height M, and not both")
-    check_apart(output, source, onto)
+    check_apart(output, source, onto, mapping, settings_file)
     if output.suffix and not output.is_dir():
         check_target(output)
     else:

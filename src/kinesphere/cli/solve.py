@@ -51,7 +51,8 @@ def solve(
             help="Take axes and rest positions from a solved recording of the same person, as they "
             "lie beside the markers. Given several times (a functional trial for each joint or "
             "axis), in any order, every axis comes from where it is known best, and contradictions "
-            "are told.",
+            "are told. Axes that are doubtful there, or plainly wrong here, give way to the "
+            "recording's own where those are better, and that is said.",
         ),
     ] = None,
     facing: Annotated[
@@ -81,9 +82,17 @@ def solve(
     from kinesphere import pipeline
     from kinesphere.cli.console import print_json, progress_bar, stdout
     from kinesphere.cli.describe_solution import describe_solution, show_solution
-    from kinesphere.cli.files import REPORT, read_all_solved, read_recording, write_solved
+    from kinesphere.cli.files import (
+        REPORT,
+        check_apart,
+        read_all_solved,
+        read_recording,
+        write_solved,
+    )
     from kinesphere.io import check_solution_place
 
+    model_file = Path(model) if model is not None and Path(model).is_file() else None
+    check_apart(output, file, *(calibration_from or ()), model_file, settings_file)
     settings = settings_from_options(assignments, settings_file)
     check_solution_place(output, [REPORT])
     with progress_bar(quiet=as_json) as progress:

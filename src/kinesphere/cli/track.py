@@ -82,7 +82,7 @@ def track(
 
     from kinesphere.cli.console import print_json, print_warnings, progress_bar, stdout
     from kinesphere.cli.describe_solution import describe_solution, show_solution
-    from kinesphere.cli.files import REPORT, read_all_solved
+    from kinesphere.cli.files import REPORT, check_apart, read_all_solved
     from kinesphere.io import check_solution_place
     from kinesphere.io.images import opencv
     from kinesphere.io.scene import read_scene
@@ -91,6 +91,7 @@ def track(
     from kinesphere.cli.describe_tracking import describe_tracking, show_tracking
     from kinesphere.pipeline.track import solve_scene
 
+    check_apart(output, file, *(calibration_from or ()), settings_file)
     settings = settings_from_options(assignments, settings_file)
     check_solution_place(output, [REPORT, STRIP, VIDEO, TABLE])
     with progress_bar(quiet=as_json) as progress, interruptions(progress.say) as stops:

@@ -39,6 +39,8 @@ class JointFit:
     """For each axis the recording it was taken from; empty for this one, or for none at all."""
     misfit: str = ""
     """How far axes from another recording miss the limb of this one, where they do."""
+    gave_way: str = ""
+    """Why axes from another recording do not serve though there are some, a clause."""
 
     @property
     def n_told(self) -> int:

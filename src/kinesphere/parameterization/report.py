@@ -110,6 +110,12 @@ def stage_warnings(
             "reused axes do not fit this recording, so these limbs are not rebuilt where they were "
             f"seen: {', '.join(missing)}"
         )
+    given_way = [f"{name} ({fit.gave_way})" for name, fit in fits.items() if fit.gave_way]
+    if given_way:
+        warnings.append(
+            "axes to be reused that are doubtful or do not fit this recording give way to its own: "
+            f"{', '.join(given_way)}"
+        )
     no_valley = [
         name
         for name, joint in seen.items()

@@ -1,15 +1,15 @@
-"""Axes from another recording: what was doubted of them there, and whether they fit here."""
+"""Axes from another recording: what was found of them there, and where own ones serve instead."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from kinesphere.data import Array, Json, Skeleton
+from kinesphere.data import Json, Skeleton
 from kinesphere.parameterization.anatomy import n_told, wanted_n_axes
-from kinesphere.parameterization.angles import JointAngles
+from kinesphere.parameterization.giving_way import there_or_own
 from kinesphere.parameterization.joined import counterpart, joined, told_axes
-from kinesphere.parameterization.joint import OUT_OF_REACH, solve_joint
+from kinesphere.parameterization.joint import OUT_OF_REACH
 from kinesphere.parameterization.joint_fit import JointFit
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.third_axis import fit_axes
@@ -34,8 +34,6 @@ CARRIED = (
     "twist_axis_off_limb_deg",
 )
 """Findings about axes that hold wherever they are used; times and residuals do not."""
-WORSE = 2.0  # times: so much farther off than the recording's own axes, at least
-FAR = np.deg2rad(2.0)  # rms, and farther than they by as much: less is how a limb is dressed
 
 
 def reused_fit(name: str, reuse: Skeleton | None) -> JointFit | None:
@@ -69,21 +67,30 @@ def reused_fit(name: str, reuse: Skeleton | None) -> JointFit | None:
 
 
 def own_or_reused(
-    view: JointView, reuse: Skeleton | None, settings: ParameterizationSettings
+    view: JointView,
+    reuse: Skeleton | None,
+    settings: ParameterizationSettings,
+    *,
+    give_way: bool = False,
 ) -> JointFit:
     """Return a joint's axes from another solution, or from its own movement if that tells more.
 
+    With ``give_way`` also where those from there are doubtful or plainly wrong (`there_or_own`).
     What was only assumed there may be measured here: of two axes that alone, beside the other from
     there, where the limb can be followed about the two.
     """
     there = reused_fit(view.name, reuse)
-    if there is not None and not there.half_told:
-        return there
+    if there is None:
+        return fit_axes(view, settings)
+    if not there.half_told:
+        return there_or_own(there, None, view, settings, give_way=give_way)
     own = fit_axes(view, settings)
-    if there is None or own.n_told > there.n_told:
+    if own.n_told > there.n_told:
         return own
     both = _with_own(there, own, view, settings)
-    return there if both is None else both
+    if both is not None:
+        return both
+    return there_or_own(there, own, view, settings, give_way=give_way)
 
 
 def _with_own(
@@ -132,28 +139,3 @@ def told_of(name: str, skeleton: Skeleton) -> Mapping[str, Json]:
             found = joints.get(name)
             return found if isinstance(found, Mapping) else {}
     return {}
-
-
-def misfit(view: JointView, solved: JointAngles, settings: ParameterizationSettings) -> str:
-    """Return how reused axes miss the limb, a clause; empty where they do not.
-
-    A limb may leave the reach of any axes a little (a hinge's cone above all); so where it does
-    often, the recording's own axes, found as if none were reused, are the measure.
-    """
-    seen = np.isfinite(solved.excess)
-    limit = np.deg2rad(settings.angles.unreachable)
-    share = float((solved.excess[seen] > limit).mean()) if seen.any() else 0.0
-    if share <= OUT_OF_REACH:
-        return ""
-    own = fit_axes(view, settings)
-    theirs, ours = _rms(solved.excess), _rms(solve_joint(view, own.axes, own.rest, settings).excess)
-    if theirs < max(WORSE * ours, ours + FAR):
-        return ""
-    return (
-        f"out of their reach in {share:.0%} of the frames and {np.rad2deg(theirs):.1f}° rms off "
-        f"instead of {np.rad2deg(ours):.1f}° by its own"
-    )
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.nanmean(values**2)))

@@ -35,7 +35,7 @@ from kinesphere.parameterization.report import (
     stage_warnings,
     told,
 )
-from kinesphere.parameterization.reused import misfit, not_reused, own_or_reused
+from kinesphere.parameterization.reused import not_reused, own_or_reused
 from kinesphere.parameterization.settings import (
     ParameterizationSettings,
 )
@@ -47,6 +47,8 @@ def parameterize(
     settings: ParameterizationSettings | None = None,
     calibration: tuple[float, float] | None = None,
     reuse: Skeleton | None = None,
+    *,
+    give_way: bool = False,
 ) -> Parameters:
     """Describe a normalized motion by angles about the axes the person moves around.
 
@@ -64,6 +66,9 @@ def parameterize(
     reuse
         A parameterized skeleton of the same person; joints of the same name take its axes and rest
         orientations.
+    give_way
+        Whether those that are doubtful, or plainly wrong for this motion, give way to its own
+        (`kinesphere.parameterization.giving_way`); else that is only said.
 
     Returns
     -------
@@ -108,10 +113,8 @@ def parameterize(
             human,
             neighbours=neighbours[j],
         )
-        fit = own_or_reused(view, reuse, settings)
+        fit = own_or_reused(view, reuse, settings, give_way=give_way)
         solved = solve_joint(view, fit.axes, fit.rest, settings)
-        if fit.source == "reused":
-            fit = replace(fit, misfit=misfit(view, solved, settings))
         rebuilt = joint_rotations(fit.axes, fit.rest, limb.long_axis, solved.angles, solved.twists)
         mid_point = lever(joint.centre_in_child, limb.length, limb.long_axis)
         angles[:, j], twists[:, j] = solved.angles, solved.twists
@@ -147,7 +150,7 @@ def parameterize(
     warnings = stage_warnings(seen, fits, settings.axes.method)
     warnings += reach_warnings(fits, findings, settings.angles.unreachable)
     own = [name for name, fit in fits.items() if fit.source != "reused"]
-    warnings += not_reused(own, reuse)
+    warnings += not_reused([name for name in own if not fits[name].gave_way], reuse)
     if (
         reuse is not None
         and len(own) < len(fits)

@@ -6,16 +6,20 @@ from dataclasses import replace
 import numpy as np
 
 from kinesphere import __version__
-from kinesphere.data import Json, Motion, Recording, Step
+from kinesphere.data import Json, Motion, Recording, Skeleton, Step
 from kinesphere.errors import BadRecording, KinesphereError
 from kinesphere.pipeline.best_axes import Calibrated
 from kinesphere.quality import Finding, check_at_zero, check_recording, gathered
+from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 
 IMPOSSIBLE = (0.1, 10.0)
 """m from feet to head: beyond, the unit is wrong and nothing else can be right."""
 OTHER_PERSON = 0.05
 """Share by which limb lengths of one person differ between solutions, at most: 0.033 over nine
 trials of one person, 0.049 between a still and a moving one; 0.032 and more between people."""
+ENOUGH = 3
+"""Limbs, of as many as both solutions have, whose length is measured: fewer do not tell people
+apart."""
 
 
 def with_checks(recording: Recording) -> Recording:
@@ -74,17 +78,41 @@ def calibration_doubts(
             f"which lasts {length:.2f} s; what there is of it was used"
         )
     for name, other in sorted(reused, key=lambda one: one.name):
-        pairs = [
-            (limb.length, its.length)
-            for limb in motion.skeleton.limbs
-            for its in other.limbs
-            if limb.name == its.name
-        ]
-        ratios = np.array([a / b for a, b in pairs if a > 0 and b > 0])
-        if len(ratios) and (off := float(np.median(np.abs(ratios - 1)))) > OTHER_PERSON:
+        off = lengths_apart(motion.skeleton, other)
+        if off is not None and off > OTHER_PERSON:
             which = f" ({name})" if len(reused) > 1 else ""
             doubts.append(
                 f"limbs differ by {off:.0%} (median) from those of the solution to be reused"
                 f"{which}: axes and rest positions hold for one person only"
             )
     return tuple(doubts)
+
+
+def lengths_apart(skeleton: Skeleton, other: Skeleton) -> float | None:
+    """Return the share by which limb lengths of two skeletons differ, the median.
+
+    Limbs with an end that neither motion nor a landmark tells, in either, are left out: such a
+    centre is put between the markers, from trial to trial elsewhere. None where too few are left.
+    """
+    unknown = _of_unknown_length(skeleton) | _of_unknown_length(other)
+    lengths = {limb.name: limb.length for limb in other.limbs if limb.length > 0}
+    ratios = {
+        limb.name: limb.length / lengths[limb.name]
+        for limb in skeleton.limbs
+        if limb.length > 0 and limb.name in lengths
+    }
+    told = [ratio for name, ratio in ratios.items() if name not in unknown]
+    if not told or len(told) < min(ENOUGH, len(ratios)):
+        return None
+    return float(np.median(np.abs(np.array(told) - 1)))
+
+
+def _of_unknown_length(skeleton: Skeleton) -> set[str]:
+    """Return the limbs at a joint whose centre is put between markers for want of anything else."""
+    guessed = [
+        joint
+        for joint in skeleton.joints
+        if joint.observability in ("undetermined", "hinge")
+        and any(place in joint.note for place in (BETWEEN, STEADY))
+    ]
+    return {limb for joint in guessed for limb in (joint.parent, joint.child)}

@@ -47,7 +47,8 @@ def solve(
         (start, end) in s since the first stored frame: where the main movements are performed.
     calibration_from
         Another recording of the same person, whose axes and rest positions are used again; of
-        several, for each joint the axes that are known best. By name, or named as their files.
+        several, for each joint the axes that are known best. By name, or named as their files. Axes
+        that are doubtful there, or plainly wrong here, give way to better ones of the recording.
     facing
         The axis of the world a person looks along in the default position, where the motion does
         not tell.

@@ -12,6 +12,7 @@ from kinesphere.parameterization import ParameterizationSettings, parameterize
 from kinesphere.pipeline.best_axes import Calibrated, with_best_axes
 from kinesphere.pipeline.carried_over import named_frames
 from kinesphere.pipeline.doubts import calibration_doubts
+from kinesphere.pipeline.numbered import as_numbered_in
 
 Source: TypeAlias = Solution | Skeleton
 """Another recording of the same person, solved."""
@@ -73,7 +74,8 @@ def parameterized(
     DegenerateMotion, BadSetting
         As `kinesphere.parameterization.parameterize` does.
     """
-    doubts = calibration_doubts(motion, calibration, others)
+    others, numbered, unmatched = _as_numbered_in(motion.skeleton, others)
+    doubts = calibration_doubts(motion, calibration, others) + unmatched
     found: dict[str, Json] = {}
     if calibration is not None and doubts:
         length = motion.n_frames / motion.rate
@@ -84,8 +86,9 @@ def parameterized(
         reuse, apart = with_best_axes(motion.skeleton, others, settings.axes)
         found |= {
             "recordings": [*sorted(other.name for other in others)],
-            "axes_from": {j.name: _origins(j.axes_reused_from) for j in reuse.joints if j.n_axes},
         }
+        if numbered:
+            found["joints_by_markers"] = numbered
         found["frames_by_name"] = by_name = reuse.history[-1].findings["frames_by_name"]
         if named := named_frames(by_name):
             doubts += (
@@ -101,7 +104,50 @@ def parameterized(
     if found:
         step = Step("calibration", {}, found, doubts, __version__)
         motion = replace(motion, history=(*motion.history, step))
-    return parameterize(motion, settings, calibration=calibration, reuse=reuse)
+    parameters = parameterize(motion, settings, calibration=calibration, reuse=reuse, give_way=True)
+    return parameters if reuse is None else _with_origins(parameters)
+
+
+def _as_numbered_in(
+    skeleton: Skeleton, others: Sequence[Calibrated]
+) -> tuple[tuple[Calibrated, ...], dict[str, Json], tuple[str, ...]]:
+    """Return recordings with joints numbered as here, which are which, and what is left over."""
+    called: list[Calibrated] = []
+    numbered: dict[str, Json] = {}
+    left: list[str] = []
+    for other in sorted(others, key=lambda one: one.name):
+        same, matched, unmatched = as_numbered_in(skeleton, other)
+        called.append(same)
+        if matched:
+            numbered[other.name] = {**matched}
+        left += [f"{joint} of {other.name} ({why})" for joint, why in unmatched.items()]
+    if not left:
+        return tuple(called), numbered, ()
+    said = (
+        "joints without a name are the same where they join limbs of the same markers; axes of "
+        f"these are not reused: {', '.join(left)}"
+    )
+    return tuple(called), numbered, (said,)
+
+
+def _with_origins(parameters: Parameters) -> Parameters:
+    """Return parameters whose calibration step says from where the axes are that serve in the end.
+
+    What is known best of other recordings may still give way to what this one tells.
+    """
+    skeleton = parameters.skeleton
+    origins: dict[str, Json] = {
+        joint.name: _origins(joint.axes_reused_from)
+        for joint in skeleton.joints
+        if any(joint.axes_reused_from)
+    }
+    history = tuple(
+        replace(step, findings={**step.findings, "axes_from": origins})
+        if step.name == "calibration"
+        else step
+        for step in parameters.history
+    )
+    return replace(parameters, skeleton=replace(skeleton, history=history), history=history)
 
 
 def _origins(names: Sequence[str]) -> Json:
