@@ -43,6 +43,12 @@ def warnings_of(
             f"the default position does not fully show {', '.join(alignment.elsewhere)}; aligned "
             "with the limb before it, in the frames that show both"
         )
+    if alignment.heelless:
+        feet = ", ".join(f"{name} ({', '.join(on)})" for name, on in alignment.heelless.items())
+        said.append(
+            "the long axis of a foot is told by markers ahead of its ankle alone, none is at the "
+            f"heel; its frame and the ankle's angles may be 20 deg off: {feet}"
+        )
     if alignment.never:
         said.append(f"{', '.join(alignment.never)} could not be aligned and keeps its frame")
     return tuple(said)
@@ -79,5 +85,6 @@ def findings_of(
         "spread_max_deg": float(spread.max()),
         "facing": verdict.as_json(),
         "limbs_without_twist": list(alignment.twistless),
+        "feet_without_heel": list(alignment.heelless),
         "limbs_off_ideal_deg": {n: float(np.rad2deg(a)) for n, a in alignment.off_ideal.items()},
     }

@@ -8,6 +8,7 @@ from kinesphere.data import Array, Codes, Mask, PoseFlag
 from kinesphere.normalization.anatomy import Anatomy
 from kinesphere.normalization.averaging import robust_mean_rotations
 from kinesphere.normalization.limb_frames import canonical_direction, minimal_frame, paper_frame
+from kinesphere.normalization.limb_lines import lacks_heel
 from kinesphere.normalization.samples import Samples
 from kinesphere.normalization.vectors import angle_between
 
@@ -34,6 +35,8 @@ class Alignment:
     in the frames that do."""
     twistless: list[str] = field(default_factory=list)
     """Limbs whose twist no frame tells."""
+    heelless: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """Feet without a marker behind the ankle → the markers that tell their line."""
     never: list[str] = field(default_factory=list)
     """Limbs that could not be aligned; they keep their frame."""
 
@@ -83,6 +86,11 @@ def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Ali
         found.turns[limb] = base_from_limb.T @ base_from_new
         found.shifts[limb] = np.nan_to_num(anatomy.mid_point(limb))
         found.off_ideal[name] = off
+        if _is_foot(anatomy, limb, base_from_limb):
+            foot, begin = anatomy.skeleton.limbs[limb], anatomy.proximal_ends[limb]
+            if lacks_heel(foot, begin, anatomy.directions[limb]):
+                seen = np.isfinite(foot.marker_positions).all(axis=1)
+                found.heelless[name] = tuple(np.array(foot.markers)[seen].tolist())
     return found
 
 
@@ -111,6 +119,15 @@ def _frame(
     if rule == "paper":
         return *paper_frame(points), off
     return minimal_frame(points, ideal), ideal, off
+
+
+def _is_foot(anatomy: Anatomy, limb: int, base_from_limb: Array) -> bool:
+    """Return whether a limb ends a chain and ideally points forward, whatever its name."""
+    line, at_end = anatomy.directions[limb], not anatomy.distal_joints[limb]
+    if not at_end or not np.isfinite(line).all():
+        return False
+    name = anatomy.skeleton.limb_names[limb]
+    return bool(canonical_direction(name, base_from_limb @ line, at_end=at_end)[0] == 1.0)
 
 
 def _mean_poses(bases: Array, rotations: Array) -> Array:
