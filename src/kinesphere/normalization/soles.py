@@ -19,8 +19,8 @@ _LOWEST = 0.05  # quantile of the toes' height that is their lowest level
 _SCATTER = np.deg2rad(5.0)
 """rad of the pitch at rest, in the mean over frames, from which on it tells nothing."""
 _STEEPER = np.deg2rad(15.0)
-"""rad from which on a line runs down too steeply to be a sole's: with a heel it lies at 0 to 9° on a
-flat foot, and so markers about the middle of a foot may lie that are all it has, to 13°."""
+"""rad from which on a line runs down too steeply to be a sole's: with a heel it lies at 0 to 9° on
+a flat foot, and so markers about the middle of a foot may lie that are all it has, to 13°."""
 _HANGS = 0.5  # least share of down in a shank whose foot stands: knees on the floor lay it level
 
 

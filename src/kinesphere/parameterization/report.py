@@ -63,7 +63,10 @@ def stage_warnings(
     warnings: list[str] = []
     if method != "body":
         for source, sentence in (
-            ("body", f"the main movements do not tell these axes, {INSTEAD}{'' if reuse else ADVICE}"),
+            (
+                "body",
+                f"the main movements do not tell these axes, {INSTEAD}{'' if reuse else ADVICE}",
+            ),
             ("movement", "these axes are doubtful, kept because that was asked for"),
         ):
             doubted = [
