@@ -51,7 +51,8 @@ def warnings_of(
 
 def _heels(alignment: Alignment) -> list[str]:
     """Return what the frames of feet without a heel rest on."""
-    levelled, lines = [], []
+    levelled: list[str] = []
+    lines: list[str] = []
     for name, on in alignment.heelless.items():
         known = name in alignment.levelled
         (levelled if known else lines).append(f"{name} ({', '.join(on)})")
