@@ -266,6 +266,45 @@ def test_a_forearm_held_out_is_told_of_somebody_who_stands(degrees, said, doll, 
     assert not said or f"left_forearm ({degrees:.0f} deg off)" in told[0]
 
 
+def without_markers(motion, limb, keep):
+    """Return the motion with only those of a limb's markers, by place, that are kept."""
+    old = motion.skeleton.limb(limb)
+    names = tuple(np.array(old.markers)[keep].tolist())
+    new = replace(old, markers=names, marker_positions=old.marker_positions[keep])
+    limbs = tuple(new if it is old else it for it in motion.skeleton.limbs)
+    return replace(motion, skeleton=replace(motion.skeleton, limbs=limbs))
+
+
+def told_of_heels(motion):
+    """Return what is said of feet without a heel, and which these are by the findings."""
+    step = step_of(normalize(motion))
+    return [w for w in step.warnings if "heel" in w], list(step.findings["feet_without_heel"])
+
+
+def test_a_foot_without_a_heel_is_told_and_by_which_markers_it_points(doll, tools):
+    it = doll()
+    assert told_of_heels(it.motion) == ([], [])
+    left = without_markers(it.motion, "left_foot", slice(0, 4))
+    (said,), feet = told_of_heels(left)
+    assert feet == ["left_foot"]
+    marks = ", ".join(f"left_foot{m}" for m in range(4))
+    assert said.endswith(f"angles may be 20 deg off: left_foot ({marks})")
+    both = without_markers(left, "right_foot", slice(0, 2))
+    assert told_of_heels(both)[1] == ["left_foot", "right_foot"]
+    (said,), feet = told_of_heels(tools.renamed(left))  # nobody knows that it is a foot
+    number = it.motion.skeleton.limb_names.index("left_foot") + 1
+    assert feet == [f"limb_{number:02d}"]
+    assert feet[0] in said
+
+
+def test_a_foot_without_markers_is_not_said_to_lack_a_heel(doll):
+    it = doll()
+    bare = without_markers(it.motion, "left_foot", slice(0, 0))
+    assert told_of_heels(bare) == ([], [])
+    one = without_markers(it.motion, "left_foot", slice(4, 5))
+    assert told_of_heels(one)[1] == ["left_foot"]  # a heel alone is taken for the toes
+
+
 @pytest.mark.parametrize(
     ("stance", "reason"),
     [

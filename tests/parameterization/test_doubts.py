@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from kinesphere.parameterization.confidence import AxesQuality
-from kinesphere.parameterization.doubts import reasons_to_doubt
+from kinesphere.parameterization.doubts import reasons_to_doubt, uncertain_in_free_motion
 from kinesphere.parameterization.report import reach_warnings, stage_warnings
 from kinesphere.parameterization.settings import AxesSettings
 
@@ -106,6 +106,29 @@ def test_who_loses_axes_is_told_why_and_what_to_do():
     assert said.endswith("right_elbow (an axis is uncertain)")
     assert "about one axis at a time" in said
     assert "--calibration-from" in said
+    (said,) = stage_warnings({}, {"right_elbow": fit}, "phase-log-pca", reuse=True)
+    assert said.endswith("serve instead: right_elbow (an axis is uncertain)")
+    assert "move each" not in said
+
+
+def test_a_kept_axis_is_described_by_what_holds_of_it():
+    fit = SimpleNamespace(
+        source="movement",
+        axes=AXIS,
+        doubts=(uncertain_in_free_motion(*np.deg2rad([12.0, 0.5, 9.0])),),
+        kept="4.8° instead of 15.2°",
+        loose="",
+        added="",
+        misfit="",
+        assumed=(),
+        half_told=False,
+        findings={},
+    )
+    (said,) = stage_warnings({}, {"left_elbow": fit}, "phase-log-pca")
+    assert said.endswith(
+        "left_elbow (4.8° instead of 15.2°; the axis of all movement is uncertain by 12.0°; "
+        "movement about another that goes with it can put it 9° off)"
+    )
 
 
 def test_that_the_bodys_axes_are_farther_off_is_said_only_where_they_are():

@@ -231,6 +231,12 @@ def test_what_only_free_motion_leaves_uncertain_is_told(rng, monkeypatch, readin
     monkeypatch.setattr(free_hinge_module, "other_reading", lambda *_: np.deg2rad(reading))
     fit = fit_joint(view, never)
     assert (fit.source == "movement") == serves
-    assert len(fit.doubts) == (2 if reading == 15.0 else 1)
-    if reading == 15.0:
-        assert fit.doubts[1].endswith("if the limb twists with the angle, it is 15° off")
+    (doubt,) = fit.doubts
+    assert ("axis of all movement" in doubt) == serves
+    if serves:  # of the axis that does not serve nothing is said, nor are its figures told
+        assert doubt.endswith(f"if the limb twists with the angle, it is {reading:.0f}° off")
+        (cone,) = fit.findings["main_movement_doubts"]
+        assert "leaves the cone" in cone
+        assert fit.findings["halves_disagreement_deg"] == [None]
+        assert fit.findings["alike_deg"] == pytest.approx([reading], abs=0.01)
+        assert fit.findings["ranges_deg"] == pytest.approx([60.0], rel=0.15)

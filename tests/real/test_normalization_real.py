@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from kinesphere.data import Recording
 from kinesphere.geometry.rotations import rotation_angle
 from kinesphere.io import read
 from kinesphere.labelling import choose_model, match_labels
@@ -41,9 +42,15 @@ walk (85_02: forearms at 61°, and 60° is where arms no longer hang)."""
 
 
 @cache
-def provisional(path):
+def provisional(path, without=()):
     recording = read(path)
     model = choose_model(recording)
+    if without:
+        labels = tuple(at for at in recording.labels if at.split(":")[-1] not in without)
+        kept = [recording.labels.index(label) for label in labels]
+        recording = Recording(
+            markers=recording.markers[:, kept], labels=labels, rate=recording.rate, up=recording.up
+        )
     recording = orient(match_labels(recording, model), model)
     return recording, fit_skeleton(recording, model)
 
@@ -64,6 +71,28 @@ def vendor_thorax(recording):
 
 def between(a, b):
     return np.rad2deg(np.arccos(np.clip((a * b).sum(axis=-1), -1, 1)))
+
+
+@pytest.mark.parametrize("without", [("LHEE", "RHEE"), ("LHEE",)])
+@pytest.mark.parametrize("name", ["lhip", "rknee"])
+def test_a_foot_without_its_heel_lies_as_with_it(recordings, name, without):
+    """By the line of its other markers alone it is 18 to 21° off in pitch."""
+    path = recordings / "functional" / f"Test_func_{name}.c3d"
+    whole, bare = (normalize(provisional(path, lost)[1]) for lost in ((), without))
+    for side in ("left", "right"):
+        with_heel, without_heel = (
+            result.rotations[:, result.skeleton.limb_names.index(f"{side}_foot")]
+            for result in (whole, bare)
+        )
+        apart = np.swapaxes(with_heel, -1, -2) @ without_heel
+        pitch = np.rad2deg(np.nanmedian(np.arctan2(apart[:, 1, 0], apart[:, 0, 0])))
+        assert abs(pitch) < 3.0
+        assert np.rad2deg(np.nanmedian(rotation_angle(apart))) < 9.0
+    feet = bare.history[-1].findings["feet_levelled_deg"]
+    assert list(feet) == [f"{'left' if heel[0] == 'L' else 'right'}_foot" for heel in without]
+    assert whole.history[-1].findings["feet_without_heel"] == []
+    (said,) = (warning for warning in bare.history[-1].warnings if "heel" in warning)
+    assert "rests flat" in said
 
 
 @pytest.mark.parametrize("name", PLUGIN_GAIT)

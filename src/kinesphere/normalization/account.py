@@ -43,9 +43,31 @@ def warnings_of(
             f"the default position does not fully show {', '.join(alignment.elsewhere)}; aligned "
             "with the limb before it, in the frames that show both"
         )
+    said += _heels(alignment)
     if alignment.never:
         said.append(f"{', '.join(alignment.never)} could not be aligned and keeps its frame")
     return tuple(said)
+
+
+def _heels(alignment: Alignment) -> list[str]:
+    """Return what the frames of feet without a heel rest on."""
+    levelled: list[str] = []
+    lines: list[str] = []
+    for name, on in alignment.heelless.items():
+        known = name in alignment.levelled
+        (levelled if known else lines).append(f"{name} ({', '.join(on)})")
+    ahead = "the long axis of a foot is told by markers ahead of its ankle alone, none is at the "
+    said = []
+    if levelled:
+        said.append(
+            f"{ahead}heel; its pitch is from where it rests flat on the floor, and the ankle's "
+            f"angles may be 10 deg off: {', '.join(levelled)}"
+        )
+    if lines:
+        said.append(
+            f"{ahead}heel; its frame and the ankle's angles may be 20 deg off: {', '.join(lines)}"
+        )
+    return said
 
 
 def _crooked(alignment: Alignment, template: str) -> list[str]:
@@ -79,5 +101,7 @@ def findings_of(
         "spread_max_deg": float(spread.max()),
         "facing": verdict.as_json(),
         "limbs_without_twist": list(alignment.twistless),
+        "feet_without_heel": list(alignment.heelless),
+        "feet_levelled_deg": {n: float(np.rad2deg(a)) for n, a in alignment.levelled.items()},
         "limbs_off_ideal_deg": {n: float(np.rad2deg(a)) for n, a in alignment.off_ideal.items()},
     }

@@ -11,6 +11,7 @@ from kinesphere.normalization.vectors import unit
 
 _TOO_SHORT = 1e-6  # m; a direction between points closer than this is rounding error
 _ROW = 1.5  # times longer than wide from which points lie in a row
+_HEEL = 0.07  # of a foot's length behind its ankle; heels are at .24 to .5, ankle markers at 0
 
 
 def main_direction(limb: Limb, begin: Array, carried: Array, *, foot: bool) -> Array:
@@ -52,6 +53,25 @@ def far_end(limb: Limb, begin: Array, along: Array) -> Array:
     reach = (limb.marker_positions - begin) @ along
     farthest = np.max(reach[np.isfinite(reach)], initial=0.0)
     return np.asarray(begin + farthest * along)
+
+
+def lacks_heel(limb: Limb, begin: Array, along: Array) -> bool:
+    """Return whether a foot has markers, none of them behind its ankle.
+
+    Then its line runs from the ankle down to the toes, and not as the sole lies.
+
+    Parameters
+    ----------
+    limb
+    begin : (3,) m
+        The ankle; unknown, it tells nothing.
+    along : (3,)
+        Unit vector along the foot.
+    """
+    ahead = (_known(limb.marker_positions) - begin) @ along
+    if not len(ahead) or not np.isfinite(ahead).all():
+        return False
+    return bool(ahead.min() > -_HEEL * ahead.max())
 
 
 def middle_of_markers(limb: Limb) -> Array:

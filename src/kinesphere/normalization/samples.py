@@ -51,11 +51,16 @@ class Samples:
         return np.asarray((self.rotations @ lines[:, :, None])[..., 0])
 
     @cached_property
-    def velocities(self) -> Array:
-        """(n, n_joints, 3) m/s over the speed window, shorter at the ends; NaN where unknown."""
+    def window(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """(n,) first and (n,) last frame of the speed window around each, shorter at the ends."""
         last = self.motion.n_frames - 1
         half = max(1, round(self.speed_window * self.motion.rate / 2))
-        before, after = np.maximum(self.frames - half, 0), np.minimum(self.frames + half, last)
+        return np.maximum(self.frames - half, 0), np.minimum(self.frames + half, last)
+
+    @cached_property
+    def velocities(self) -> Array:
+        """(n, n_joints, 3) m/s over the speed window, shorter at the ends; NaN where unknown."""
+        before, after = self.window
         seconds = (after - before) / self.motion.rate
         with np.errstate(invalid="ignore", divide="ignore"):
             moved: Array = self._joints_at(after) - self._joints_at(before)

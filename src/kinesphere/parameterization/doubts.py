@@ -86,10 +86,10 @@ def uncertain(quality: AxesQuality, which: int | None = None) -> str:
     return told + _if_it_twists(quality.readings[worst]) + _if_coupled(quality.coupled[worst])
 
 
-def uncertain_in_free_motion(uncertainty: float, reading: float) -> str:
+def uncertain_in_free_motion(uncertainty: float, reading: float, coupled: float) -> str:
     """Return how uncertain the axis of a hinge from all its movement is, rad, as a clause."""
     told = f"the axis of all movement is uncertain by {np.rad2deg(uncertainty):.1f}°"
-    return told + _if_it_twists(reading)
+    return told + _if_it_twists(reading) + _if_coupled(coupled)
 
 
 def _if_it_twists(reading: float) -> str:

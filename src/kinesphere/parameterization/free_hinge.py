@@ -39,6 +39,8 @@ class FreeHinge:
     """rad, the same of the body's axis, its cone found as that of the other."""
     moved: float
     """rad, arc that the limb's direction covers about the axis."""
+    coupled: float = 0.0
+    """rad, how far other movement that goes with it may put the axis off: `coupling`."""
 
     @property
     def clearly_better(self) -> bool:
@@ -56,7 +58,8 @@ def hinge_worth_having(view: JointView, options: AxesSettings) -> FreeHinge | No
         return None
     axis, moved = found.axis[None], np.array([found.moved])
     coupled = float(coupling(view.samples, axis, moved, view.neighbours)[0])
-    found = replace(found, uncertainty=float(np.hypot(found.uncertainty, coupled)))
+    uncertainty = float(np.hypot(found.uncertainty, coupled))
+    found = replace(found, uncertainty=uncertainty, coupled=coupled)
     far = np.arccos(min(1.0, abs(float(found.axis @ body_axis)))) > np.deg2rad(options.farthest)
     small = found.moved < np.deg2rad(options.smallest_range)
     loose = found.uncertainty > np.deg2rad(LOOSE * options.largest_uncertainty)

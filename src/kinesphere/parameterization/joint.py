@@ -80,10 +80,8 @@ def fit_joint(
     if free is not None:
         axes, rest, _ = movement_rest(view, free.axis[None], _height(view, free.axis), settings)
         uncertainty = np.array([free.uncertainty])
-        largest = np.deg2rad(options.largest_uncertainty)
-        told = quality is not None and quality.uncertainty.max() > largest
-        if free.uncertainty > largest and not told:
-            doubts.append(uncertain_in_free_motion(free.uncertainty, free.reading))
+        # what speaks against the axis of main movements says nothing of this one
+        doubts = [uncertain_in_free_motion(free.uncertainty, free.reading, free.coupled)]
     elif one is not None:
         axes, rest, quality = one
         uncertainty, loose = quality.uncertainty, found.remark
@@ -125,7 +123,7 @@ def fit_joint(
         "reliable_s": float(view.calibration.sum() / view.samples.rate),
         "axes_uncertainty_deg": or_null(np.rad2deg(uncertainty)),
         "axes_apart_deg": angles_between(axes),
-        **quality_findings(quality),
+        **(quality_findings(quality) if free is None else _free_findings(free)),
     }
     if source == "movement" and n_axes == 1 and (reading := _reading(quality, free)) > 0:
         findings["other_reading_deg"] = float(np.rad2deg(reading))
@@ -133,6 +131,7 @@ def fit_joint(
     if free is not None:
         left, body_left = np.rad2deg(free.error), np.rad2deg(free.body_error)
         findings |= {"held_out_deg": left, "held_out_body_deg": body_left}
+        findings["main_movement_doubts"] = list(found.doubts)
         kept = f"{left:.1f}° instead of {body_left:.1f}°"
     return JointFit(
         axes,
@@ -196,6 +195,16 @@ def _reading(quality: AxesQuality | None, free: FreeHinge | None) -> float:
     if free is not None:
         return free.reading
     return 0.0 if quality is None else float(quality.readings[0])
+
+
+def _free_findings(free: FreeHinge) -> dict[str, Json]:
+    """Return the figures of an axis from all movement; null for what only main movements have."""
+    return {
+        "ranges_deg": [float(np.rad2deg(free.moved))],
+        "conditioning": [None],
+        "halves_disagreement_deg": [None],
+        "alike_deg": [float(np.rad2deg(np.hypot(free.reading, free.coupled)))],
+    }
 
 
 def _height(view: JointView, axis: Array) -> Array:

@@ -15,9 +15,10 @@ LARGE_SHARE = 0.25
 """Of the frames: a hinge whose limb is out of its reach more often than that is no plain hinge."""
 
 
-INSTEAD = (
-    "the body frame's serve instead (to have them measured, move each of these joints about one "
-    "axis at a time, twice and by 20° or more, or name such a recording with --calibration-from)"
+INSTEAD = "the body frame's serve instead"
+ADVICE = (
+    " (to have them measured, move each of these joints about one axis at a time, twice and by 20° "
+    "or more, or name such a recording with --calibration-from)"
 )
 
 
@@ -46,7 +47,7 @@ def told(view: JointView) -> Told:
 
 
 def stage_warnings(
-    seen: Mapping[str, Told], fits: Mapping[str, JointFit], method: str
+    seen: Mapping[str, Told], fits: Mapping[str, JointFit], method: str, *, reuse: bool = False
 ) -> tuple[str, ...]:
     """Return what was guessed or is doubtful, joints of one complaint in one sentence.
 
@@ -56,11 +57,16 @@ def stage_warnings(
         By joint name.
     method
         The axis method asked for; body axes that were asked for are no complaint.
+    reuse
+        Whether another recording was named to take axes from: who did so needs no advice to.
     """
     warnings: list[str] = []
     if method != "body":
         for source, sentence in (
-            ("body", f"the main movements do not tell these axes, {INSTEAD}"),
+            (
+                "body",
+                f"the main movements do not tell these axes, {INSTEAD}{'' if reuse else ADVICE}",
+            ),
             ("movement", "these axes are doubtful, kept because that was asked for"),
         ):
             doubted = [
@@ -81,7 +87,7 @@ def stage_warnings(
                 f"nearest the body frame's: {', '.join(halved)}"
             )
         kept = [
-            f"{name} ({fit.kept}, though {'; '.join(fit.doubts)})"
+            f"{name} ({'; '.join((fit.kept, *fit.doubts))})"
             for name, fit in fits.items()
             if fit.kept
         ]

@@ -147,7 +147,7 @@ def parameterize(
         }
     if settings.angles.unwrap:
         angles, twists = unwrapped(angles), unwrapped(twists)
-    warnings = stage_warnings(seen, fits, settings.axes.method)
+    warnings = stage_warnings(seen, fits, settings.axes.method, reuse=reuse is not None)
     warnings += reach_warnings(fits, findings, settings.angles.unreachable)
     own = [name for name, fit in fits.items() if fit.source != "reused"]
     warnings += not_reused([name for name in own if not fits[name].gave_way], reuse)
