@@ -200,6 +200,15 @@ def test_pieces_without_labels_that_meet_are_no_copies(clean):
     assert "coincident" not in rules
 
 
+@pytest.mark.parametrize("times", [0.1, 1e-3])
+def test_what_is_small_is_no_copy_but_a_copy_is_one(clean, times):
+    small = replace(clean, markers=times * clean.markers)
+    assert "coincident" not in {f.rule for f in check_recording(small)}
+    copy = doubled(small, seen=slice(None), labels={})
+    pairs = [f.markers for f in check_recording(copy) if f.rule == "coincident"]
+    assert pairs == [("LANK", "copy")]
+
+
 def test_passing_by_is_not_coincident(clean):
     other = clean.markers[3, clean.labels.index("LANK")]
     assert not any(
