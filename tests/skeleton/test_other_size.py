@@ -66,7 +66,10 @@ def test_joints_from_motion_alone_are_those_of_the_person_whatever_the_unit(pers
     recording, _ = person
     found = discover(rescaled(recording, times))
     assert found.unit == times
-    assert sum("unit of length" in w for w in found.step.warnings) == 1
+    (told,) = (w for w in found.step.warnings if "unit of length" in w)
+    stature = float(told.partition("someone of ")[2].partition(" m)")[0])
+    assert 1.2 < stature / times < 2.1
+    assert f"{1 / times:.4g} times as large" in told
     assert discover(rescaled(recording, 1 / times)).model.segments == found.model.segments
     other = fit_skeleton(rescaled(recording, times), found.model, unit=found.unit)
     is_the_same(
