@@ -104,6 +104,23 @@ def test_fragments_of_a_raw_stream_are_one_line_of_gaps(performance):
     assert line.startswith("164 markers are missing in 7")
 
 
+@pytest.mark.parametrize("times", [1e-3, 1e3])
+def test_checks_are_those_of_the_true_size_where_it_is_known(performance, times):
+    recording = performance.recording
+    markers = np.concatenate([recording.markers, recording.markers[:, :1]], axis=1)
+    markers[50, 3] += 3.0  # a jump of 5.2 m
+    labels = tuple(f"*{c}" for c in range(markers.shape[1]))
+    labels = ("A", "B", "C", "D", *labels[4:-1], "copy")
+    true = Recording(markers, labels, recording.rate)
+    expected = set(with_checks(true).history[-1].warnings)
+    assert any("jump" in w for w in expected)
+    assert any("A and copy" in w for w in expected)
+    other = with_checks(replace(true, markers=times * markers), times).history[-1].warnings
+    assert expected < set(other)
+    (unit,) = set(other) - expected
+    assert "check the length unit" in unit
+
+
 def test_a_window_beyond_the_end_is_said(performance, solution):
     assert not [w for w in solution.warnings if "window" in w]
     beyond = solve(performance.recording, calibration=(0.0, 600.0))

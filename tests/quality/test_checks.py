@@ -100,20 +100,52 @@ def test_a_jump_beside_zeros_is_still_a_jump(clean):
     assert found[1].frame == FIRST + 30
 
 
-@pytest.mark.parametrize(("at", "gone"), [(0.09, False), (0.11, True)])
-def test_a_zero_is_a_gap_unless_the_marker_is_beside_the_origin(clean, at, gone):
+SIZES = (1.0, 0.1, 1e-3, 1e3)  # of the subject, in persons
+
+
+@pytest.mark.parametrize("times", SIZES)
+@pytest.mark.parametrize(("before", "after", "gone"), [(0.05, 0.06, False), (0.05, 0.2, True)])
+def test_a_single_zero_stays_on_the_way_past_the_origin_at_any_size(
+    clean, before, after, gone, times
+):
     column, markers = clean.labels.index("RELB"), clean.markers.copy()
-    markers[10:20, column], markers[9, column] = 0.0, [0.0, at, 0.0]
+    markers[9:12, column] = [[0.0, before, 0.0], [0.0, 0.0, 0.0], [0.0, -after, 0.0]]
     markers[:3, 0] = 0.0  # and one that is far from it, at the very beginning
-    recording = replace(clean, markers=markers)
+    recording = replace(clean, markers=times * markers)
     found, told = with_zeros_as_gaps(recording)
-    assert np.isnan(found.markers[10:20, column]).all() == gone
-    assert (found.markers[10:20, column] == 0).all() == (not gone)
+    assert np.isnan(found.markers[10, column]).all() == gone
+    assert (found.markers[10, column] == 0).all() == (not gone)
     assert np.isnan(found.markers[:3, 0]).all()
     same = found.seen
     np.testing.assert_array_equal(found.markers[same], recording.markers[same])
     frames = {f.markers[0]: dict(f.numbers)["frames"] for f in told}
-    assert frames == {clean.labels[0]: 3} | ({"RELB": 10} if gone else {})
+    assert frames == {clean.labels[0]: 3} | ({"RELB": 1} if gone else {})
+
+
+@pytest.mark.parametrize(
+    ("columns", "frames"),
+    [([3], [10, 11]), ([3], [10, 30]), ([3, 5], [10])],
+    ids=["in a row", "twice", "two markers"],
+)
+def test_nothing_is_measured_at_the_exact_origin_twice(clean, columns, frames):
+    """Not even beside it: the marker is 1 mm from the origin before and after."""
+    markers = clean.markers.copy()
+    for column in columns:
+        markers[:, column] = [0.001, 0.0, 0.0]
+    markers[np.ix_(frames, columns)] = np.nan
+    zeros = replace(clean, markers=np.nan_to_num(markers))
+    np.testing.assert_array_equal(with_zeros_as_gaps(zeros)[0].markers, markers)
+
+
+@pytest.mark.parametrize("times", SIZES)
+def test_zeros_are_gaps_at_any_size_about_the_origin(clean, rng, times):
+    """As if they had been missing: of a subject in whose midst the origin is, too."""
+    middle = clean.markers.mean(axis=(0, 1))
+    missing = rng.random(clean.markers.shape[:2]) < 0.1
+    markers = np.where(missing[..., None], np.nan, times * (clean.markers - middle))
+    found, told = with_zeros_as_gaps(replace(clean, markers=np.nan_to_num(markers)))
+    np.testing.assert_array_equal(found.markers, markers)
+    assert sum(dict(f.numbers)["frames"] for f in told) == missing.sum()
 
 
 def test_a_marker_that_is_nowhere_else_is_never_seen(clean):
@@ -166,6 +198,15 @@ def test_pieces_without_labels_that_meet_are_no_copies(clean):
     markers[: n // 3, -1] = markers[2 * n // 3 :, recording.labels.index("LANK")] = np.nan
     rules = {f.rule for f in check_recording(replace(recording, markers=markers))}
     assert "coincident" not in rules
+
+
+@pytest.mark.parametrize("times", [0.1, 1e-3])
+def test_what_is_small_is_no_copy_but_a_copy_is_one(clean, times):
+    small = replace(clean, markers=times * clean.markers)
+    assert "coincident" not in {f.rule for f in check_recording(small)}
+    copy = doubled(small, seen=slice(None), labels={})
+    pairs = [f.markers for f in check_recording(copy) if f.rule == "coincident"]
+    assert pairs == [("LANK", "copy")]
 
 
 def test_passing_by_is_not_coincident(clean):

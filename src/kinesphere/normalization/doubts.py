@@ -7,6 +7,7 @@ _FLAT = 0.7  # times the plane distance that costs 1; who stands stays below hal
 LYING = 60.0
 """deg of tilt from which a trunk lies rather than leans."""
 _UPSIDE_DOWN = 120.0  # deg
+_BODIES = (0.01, 10.0)  # m, spans of which lengths are told in mm; others are in a wrong unit
 _SLIM = 0.6  # short over long side of the rectangle around the joints of somebody who stands
 
 
@@ -41,10 +42,18 @@ def doubts(
     if (angle := terms.get("knee_flexion_deg", 0.0)) > _TOLERATED * settings.knee_flexion:
         reasons.append(f"a knee is bent by {angle:.0f} deg")
     if (distance := terms.get("plane_distance_mm", 0.0)) > _FLAT * plane:
-        reasons.append(f"the joints are {distance:.0f} mm off their plane")
+        reasons.append(f"the joints are {_length(distance, span)} off their plane")
     if (found := terms.get("speed_mm_per_s", 0.0)) > _TOLERATED * speed:
-        reasons.append(f"the body moves at {found:.0f} mm/s")
+        reasons.append(f"the body moves at {_length(found, span)}/s")
     slim = settings.template == "standing" and tilt <= LYING
     if slim and (ratio := terms.get("rectangle_ratio", 0.0)) > _SLIM:
         reasons.append(f"the body is {ratio:.2f} times as wide as tall")
     return tuple(reasons)
+
+
+def _length(millimetres: float, span: float) -> str:
+    """Return a length for a person, in shares of the body where it is of no body's size."""
+    low, high = _BODIES
+    if low <= span <= high:
+        return f"{millimetres:.0f} mm"
+    return f"{millimetres / span * 1e-3:.2g} body spans"

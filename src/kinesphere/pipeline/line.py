@@ -90,7 +90,7 @@ def solve(
             recording = with_labels(recording, given, subject, settings.labelling)
             labelled, chosen = match_labels(recording, given, subject), given
     with clock.stage("orientation"):
-        oriented = with_checks(orient(labelled, chosen, settings.orientation))
+        oriented = with_checks(orient(labelled, chosen, settings.orientation), unit)
     with clock.stage("skeleton"):
         # markers that were found loose are not to be taken in again
         measured = settings.skeleton if given else replace(settings.skeleton, adopt_markers=False)

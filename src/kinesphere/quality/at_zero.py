@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from kinesphere.data import Mask, Recording
+from kinesphere.quality.extent import usual_extent
 from kinesphere.quality.findings import Finding
-from kinesphere.quality.gaps import runs
 
 AT_ZERO = "at-zero"
-NEAR = 0.1
-"""m from the origin, where a marker is just before or after a zero that it may have been at."""
+NEAR = 0.2
+"""Share of the markers' extent from the origin within which a marker may be about to pass it: 0.08
+to 0.13 m of people, 0.01 m of a hand."""
 
 
 def check_at_zero(recording: Recording) -> Iterator[Finding]:
@@ -48,8 +49,9 @@ def without_zeros(recording: Recording) -> Recording:
 def with_zeros_as_gaps(recording: Recording) -> tuple[Recording, tuple[Finding, ...]]:
     """Return the recording with what cannot have been measured at the origin as not seen.
 
-    A span of zeros stays where the marker is within `NEAR` of the origin just before or after it:
-    there it may have passed. Elsewhere, and throughout a marker's life, it is a gap.
+    A zero stays only where the marker may have passed the origin: it is there in one frame of the
+    recording, no other marker is there with it, and in the frames beside it, as far as they show
+    it, it is within `NEAR` of the origin. Nothing is measured there to the last bit twice.
 
     Returns
     -------
@@ -62,11 +64,14 @@ def with_zeros_as_gaps(recording: Recording) -> tuple[Recording, tuple[Finding, 
     if not gone.any():
         return recording, ()
     markers = np.where(gone[..., None], np.nan, recording.markers)
-    away = np.linalg.norm(markers, axis=2)
-    for c, start, stop in zip(*runs(gone), strict=True):
-        before, after = away[max(0, start - 1) : start, c], away[stop : stop + 1, c]
-        if (np.concatenate([before, after]) < NEAR).any():
-            gone[start:stop, c] = False
+    once = gone & (gone.sum(axis=0) == 1) & (gone.sum(axis=1, keepdims=True) == 1)
+    if once.any():
+        near = NEAR * usual_extent(markers)
+        for frame, c in np.argwhere(once):
+            away = np.linalg.norm(markers[max(0, frame - 1) : frame + 2, c], axis=1)
+            away = away[np.isfinite(away)]
+            if len(away) and (away < near).all():
+                gone[frame, c] = False
     if not gone.any():
         return recording, ()
     told = check_at_zero(

@@ -8,6 +8,7 @@ from kinesphere.data import Array, Recording
 from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.vectors import is_seen, lengths
 from kinesphere.quality.body import judged_columns, labelled_columns, lasting_columns, thinned
+from kinesphere.quality.extent import usual_extent
 from kinesphere.quality.findings import Finding
 from kinesphere.quality.gaps import runs
 
@@ -20,7 +21,9 @@ FASTEST = 20.0
 LONGEST_STEP = 1.0
 """s; over a longer gap a mean speed says nothing."""
 SAME_PLACE = 1e-3
-"""m; two markers are 9 mm and more across."""
+"""m, of people; two markers are 9 mm and more across."""
+ALIKE = 0.005
+"""The same as a share of the markers' extent, of what is smaller than a person."""
 FARTHEST = 1e5
 """m; what lies farther out was never measured: 32-bit floats tell it to 8 mm at best."""
 COINCIDENT = "coincident"
@@ -100,19 +103,20 @@ def check_coincident(recording: Recording) -> Iterator[Finding]:
     """
     seen, labelled = recording.seen, set(labelled_columns(recording))
     columns = sorted(labelled | set(lasting_columns(recording)))
+    near = min(SAME_PLACE, ALIKE * usual_extent(recording.markers))
     frames = even_frames(recording.n_frames, SAMPLED_FRAMES)
     points = recording.markers[frames][:, columns]
     often = seen[frames][:, columns].sum(axis=0)
     for i, column in enumerate(columns[:-1]):
         distances = lengths(points[:, i + 1 :] - points[:, i : i + 1])
         together = np.isfinite(distances).sum(axis=0)
-        same = (distances < SAME_PLACE).sum(axis=0)  # NaN compares as False
+        same = (distances <= near).sum(axis=0)  # NaN compares as False
         side_by_side = together >= TOGETHER * np.minimum(often[i], often[i + 1 :])
         if column in labelled:
             side_by_side |= [other in labelled for other in columns[i + 1 :]]
         for j in np.flatnonzero((same > 0) & (2 * same >= together) & side_by_side):
             pair = (recording.labels[column], recording.labels[columns[i + 1 + j]])
-            frame = recording.first_frame + int(frames[(distances[:, j] < SAME_PLACE).argmax()])
+            frame = recording.first_frame + int(frames[(distances[:, j] <= near).argmax()])
             yield Finding(
                 COINCIDENT,
                 "warning",

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.geometry.in_words import in_millimetres
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.landmarks import BETWEEN
 from kinesphere.skeleton.measured import MeasuredJoint
@@ -40,7 +41,7 @@ def far_centres(joints: Mapping[str, MeasuredJoint], bodies: Mapping[str, Body])
     """
     away, astray = {}, {}
     for child, joint in joints.items():
-        said = f"{joint.model.name} ({joint.off * 1e3:.0f} mm from where it was expected)"
+        said = f"{joint.model.name} ({in_millimetres(joint.off)} from where it was expected)"
         parent, limb = bodies[joint.model.parent], bodies[child]
         seen = ((parent.shape, joint.fit.centre, parent.centre), (limb.shape, limb.centre, None))
         beyond = all(_beyond(*one) for one in seen)

@@ -18,6 +18,7 @@ from kinesphere.data import (
     settings_as_json,
 )
 from kinesphere.errors import BadRecording
+from kinesphere.geometry.in_words import in_millimetres
 from kinesphere.skeleton.adoption import adopt, find_adoptions
 from kinesphere.skeleton.chain import measure_chain
 from kinesphere.skeleton.far_centres import far_centres
@@ -38,6 +39,10 @@ POOR = 0.03
 TOO_LARGE = (
     "nobody is so large: the unit of length is likely wrong; joints are judged as if it were "
     "{:g} times smaller, and so are the millimetres said of them"
+)
+TOO_SMALL = (
+    "no body is so small: the unit of length is likely wrong; joints are judged as if it were "
+    "{:g} times larger, and so are the millimetres said of them"
 )
 ELSEWHERE = {
     BETWEEN: "put midway between the markers of both limbs",
@@ -71,7 +76,7 @@ def fit_skeleton(
     unit
         How many times too large lengths are, as far as that is known already: everything is
         measured in lengths that suit people, and brought back. If None, 1, and aloud a power of ten
-        where nobody is so large.
+        where nobody is so large or no body so small.
 
     Returns
     -------
@@ -98,7 +103,8 @@ def fit_skeleton(
     if unit != 1:
         smaller = with_lengths(recording, model, 1 / unit)
         motion = fit_skeleton(*smaller, settings, unit=1.0)
-        return larger(motion, unit, "" if known else TOO_LARGE.format(unit))
+        told = TOO_LARGE.format(unit) if unit > 1 else TOO_SMALL.format(1 / unit)
+        return larger(motion, unit, "" if known else told)
     asked, share = settings, size_share(of_limbs)
     settings = scaled(asked, share)
     markers = {label: recording.markers[:, i] for i, label in enumerate(recording.labels)}
@@ -172,7 +178,7 @@ def _poor_fits(limbs: Sequence[str], residuals: Array, share: float) -> tuple[st
     for limb, column in zip(limbs, residuals.T, strict=True):
         known = column[np.isfinite(column)]
         if len(known) and (rms := float(np.sqrt(np.mean(known**2)))) > POOR * share:
-            poor.append(f"{limb} ({rms * 1e3:.0f} mm)")
+            poor.append(f"{limb} ({in_millimetres(rms)})")
     if not poor:
         return ()
     return (
@@ -200,7 +206,7 @@ def _open_centres(
             continue
         one = measured[joint.child]
         if one.drawn_away:
-            drawn.append(f"{joint.name} ({one.off * 1e3:.0f} mm)")
+            drawn.append(f"{joint.name} ({in_millimetres(one.off)})")
         else:
             place = ELSEWHERE.get(one.source, "where the model's landmarks expect it")
             places.setdefault(place, []).append(joint.name)

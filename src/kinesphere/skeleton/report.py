@@ -4,6 +4,7 @@ import numpy as np
 
 from kinesphere.data import Array, Joint, Limb, Observability, PoseFlag
 from kinesphere.geometry.even_frames import even_frames
+from kinesphere.geometry.in_words import in_millimetres
 from kinesphere.geometry.range_of_motion import RANGE_SAMPLE, range_of_motion
 from kinesphere.geometry.vectors import lengths
 from kinesphere.skeleton.body import Body
@@ -77,16 +78,16 @@ def verdict_on(
     placed = f"placed by expectation ({measured.source})"
     if moved < np.deg2rad(settings.min_range_deg) or weak > 1:
         if measured.drawn_away:
-            placed = f"{measured.off * 1e3:.0f} mm from where it is expected ({measured.source})"
+            placed = f"{in_millimetres(measured.off)} from where it is expected ({measured.source})"
         return "undetermined", f"range of motion {degrees:.0f}°, centre undetermined, {placed}"
     if weak == 1:
         return "hinge", (
             f"range of motion {degrees:.0f}°, centre open along one axis "
-            f"(± {min(deviations[-1], 9.999) * 1e3:.0f} mm), there {placed}"
+            f"(± {in_millimetres(min(deviations[-1], 9.999))}), there {placed}"
         )
     note = f"range of motion {degrees:.0f}°"
     if measured.drawn >= SAID:
-        drawn = f"drawn {measured.drawn * 1e3:.0f} mm towards where it is expected"
+        drawn = f"drawn {in_millimetres(measured.drawn)} towards where it is expected"
         note = f"{note}, {drawn} ({measured.source})"
     return "determined", note
 

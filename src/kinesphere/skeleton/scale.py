@@ -1,4 +1,4 @@
-"""Lengths that suit people: shrunk for a hand or an insect, grown where the unit must be wrong."""
+"""Lengths that suit people: shrunk for a hand, and others where the unit must be wrong."""
 
 from dataclasses import replace
 
@@ -11,6 +11,8 @@ from kinesphere.skeleton.settings import SkeletonSettings
 PERSON = 0.2
 """m, rms extent of all markers about their middle from which a subject counts as a person's size:
 people have 0.40 to 0.66 m, a single arm or foot with its shank 0.16 to 0.18 m, a hand 0.05 m."""
+TINY = 0.006
+"""m, the same of markers along 2 cm: less than a finger, and hardly more than a single marker."""
 
 
 def size_share(markers: Array) -> float:
@@ -23,12 +25,19 @@ def size_share(markers: Array) -> float:
 
 
 def times_too_large(markers: Array) -> float:
-    """Return 1, or the power of ten by which lengths are too large for any body, (n, m, 3) m.
+    """Return 1, or the power of ten by which lengths are too large or small for any body.
 
-    From ten times `PERSON` on nobody is as large: a unit was taken for another one.
+    From ten times `PERSON` on nobody is as large and below `TINY` nothing bears markers: a unit was
+    taken for another one. What comes out is below ten times `PERSON`, or above a tenth.
+
+    Parameters
+    ----------
+    markers : (n_frames, n, 3) m
     """
     usual = _extent(markers)
-    return 10.0 ** max(0.0, np.floor(np.log10(usual / PERSON))) if usual > 0 else 1.0
+    if not usual > 0 or TINY <= usual < PERSON:
+        return 1.0
+    return float(10.0 ** np.trunc(np.log10(usual / PERSON)))
 
 
 def _extent(markers: Array) -> float:

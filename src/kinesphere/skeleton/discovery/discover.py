@@ -44,7 +44,7 @@ class Discovery:
     step: Step
     """What was found and how sure it is, other trees and loose markers included."""
     unit: float | None = None
-    """By which power of ten lengths are too large, or below 1 too small, for the person that was
+    """By which factor lengths are too large, or below 1 too small, for the person that was
     found; for `fit_skeleton`. None where nothing says so."""
 
 

@@ -45,7 +45,7 @@ class Names:
     refused: str = ""
     """Why these names are not given after all: the reading is good, the size is not a person's."""
     too_large: float = 1.0
-    """By which power of ten lengths are too large, or below 1 too small, if this is a person."""
+    """By which factor lengths are too large, or below 1 too small, if this is a person."""
 
     @property
     def given(self) -> bool:
@@ -80,7 +80,7 @@ def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> N
         "person": True,
         "tree_confidence": round(confidence, 3),
         "cost_per_length": round(person.cost / person.lengths, 2),
-        "stature_m": round(person.stature, 2),
+        "stature_m": float(f"{person.stature:.3g}"),
     }
     if beside_animal < SURE:
         account |= {"person": False}
@@ -92,11 +92,11 @@ def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> N
         times = person.times_too_large
         refused = (
             "by its proportions the tree could be a person, but the size is not a person's "
-            f"(legs of someone of {person.stature:.2f} m): limbs are numbered; if it was a "
+            f"(legs of someone of {person.stature:.4g} m): limbs are numbered; if it was a "
             "person, the unit of length is wrong"
         )
         if times != 1:
-            refused += f", and joints are judged as if lengths were {1 / times:g} times as large"
+            refused += f", and joints are judged as if lengths were {1 / times:.4g} times as large"
     elif (sized := confidence_of(person.cost + person.size, person.nobody)) < confidence:
         confidence = sized
         refused = "" if sized >= SURE else _ambiguous(sized)
