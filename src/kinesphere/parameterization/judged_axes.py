@@ -51,8 +51,18 @@ class MovementAxes:
     """Why these axes should not serve, each a clause."""
     remark: str = ""
     """What a person should know of axes that serve: how far two halves contradict each other."""
+    contradicted: Array | None = None
+    """(n_found,) rad, the most that any two halves are apart, also such as are no judges of the
+    whole; None where that was not asked."""
     told: int | None = None
     """Which of two axes serves although the other does not: `axis_told`."""
+
+    @property
+    def kept(self) -> AxesQuality | None:
+        """What is told of these axes where they serve: as uncertain as any two halves say."""
+        if self.quality is None or self.contradicted is None:
+            return self.quality
+        return replace(self.quality, halves=np.fmax(self.quality.halves, self.contradicted))
 
     def doubtful(self, options: AxesSettings) -> bool:
         """Return whether anything speaks against these axes."""
@@ -130,8 +140,8 @@ def judged(
                 f"halves of the time put the axis that is told {np.rad2deg(alone[told]):.0f}° apart"
             )
             told = None
-    remark = _remark(quality, apart_by, told, settings.axes)
-    return MovementAxes(axes, quality, tuple(doubts), remark, told)
+    remark = _remark(replace(quality, halves=apart_by), told, settings.axes)
+    return MovementAxes(axes, quality, tuple(doubts), remark, apart_by, told)
 
 
 def _contradicted(
@@ -167,11 +177,11 @@ def with_room(options: AxesSettings, name: str) -> AxesSettings:
     return replace(options, largest_uncertainty=most)
 
 
-def _remark(quality: AxesQuality, apart_by: Array, told: int | None, options: AxesSettings) -> str:
+def _remark(quality: AxesQuality, told: int | None, options: AxesSettings) -> str:
     """Return how far halves contradict each other or how uncertain axes are; empty if hardly."""
     of = slice(None) if told is None else slice(told, told + 1)
-    if np.rad2deg(apart_by[of].max()) > options.largest_disagreement:
-        return apart(apart_by[of])
+    if np.rad2deg(quality.halves[of].max()) > options.largest_disagreement:
+        return apart(quality.halves[of], quality.ranges[of])
     if np.rad2deg(quality.uncertainty[of].max()) > options.largest_uncertainty:
         return uncertain(quality, told)
     return ""
