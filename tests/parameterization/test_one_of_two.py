@@ -112,7 +112,8 @@ def test_halves_that_move_as_far_contradict_an_axis_alone(
     """However few phases are in one: two axes would confirm each other, and it may lack one."""
 
     def contradiction(halves, axes, search):
-        return np.deg2rad([[apart_deg] * len(axes), [arc_deg] * len(axes)])
+        one = np.ones(len(axes))
+        return np.deg2rad(apart_deg * one), np.deg2rad(arc_deg * one), one
 
     monkeypatch.setattr(judged_axes, "contradiction", contradiction)
     fit = fit_joint(hip(rng, 40.0, 5.0)[0], SETTINGS)  # arcs about flexion of 70°

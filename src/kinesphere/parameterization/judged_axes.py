@@ -155,11 +155,12 @@ def _contradicted(
 ) -> tuple[AxesQuality, Array, Array]:
     """Return the quality with what halves of the time contradict, and the most they do, (n,) rad.
 
-    The most holds halves, too, that are not alike enough to judge the whole. Last comes how far
+    The most holds halves, too, that are not alike enough to judge the whole, if each moves about one
+    axis at a time: walking about beside a calibration contradicts nothing. Last comes how far
     halves are apart that both move as far, however few phases one has; NaN where they do not.
     """
     halves = (half.samples for half in view_halves(view, settings))
-    off, arcs = contradiction(halves, axes, search)
+    off, arcs, pure = contradiction(halves, axes, search)
     comparable = arcs >= COMPARABLE * quality.ranges
     as_far = np.where(comparable, off, np.nan)
     if n_axes > 1:  # main movements are made one after another: a half may lack one
@@ -167,7 +168,11 @@ def _contradicted(
         shares = early_share(samples, quality.labels, len(axes), *half)
         comparable &= np.abs(shares - 0.5) <= 0.5 - LEAST_SHARE
     halves_apart = np.fmax(quality.halves, np.where(comparable, off, np.nan))
-    said = np.where(arcs >= np.deg2rad(settings.axes.smallest_range), off, 0.0)
+    options = settings.axes
+    judges = arcs >= np.deg2rad(options.smallest_range)
+    if not in_free_motion(n_axes, options):
+        judges &= pure >= options.purest
+    said = np.where(judges, off, 0.0)
     return replace(quality, halves=halves_apart), np.fmax(halves_apart, said), as_far
 
 
