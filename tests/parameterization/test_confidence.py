@@ -99,3 +99,13 @@ def test_conditioning_tells_how_many_times_larger_the_rotation_is(rng, calibrati
         mine = [v for v, at in zip(swings, quality.labels, strict=True) if at == k]
         sizes = np.linalg.svd(np.concatenate(mine), compute_uv=False)  # rad, not rad²
         assert told == pytest.approx(sizes[0] / sizes[1])
+
+
+def test_a_half_that_does_all_at_once_is_not_pure(rng, calibration):
+    samples, halves = alternating(rng, calibration)
+    axes = search(samples)[1]
+    *_, pure = contradiction(halves, axes, search)
+    assert (pure > 0.95).all()
+    mixed = halves[1].with_phases(((halves[1].phases[0][0], halves[1].phases[-1][1]),))
+    *_, pure = contradiction([halves[0], mixed], axes, search)
+    assert (pure < 0.9).all()

@@ -59,7 +59,7 @@ def test_a_movement_done_on_and_on_is_repeated(times, pause_s, kept):
 
 
 def held(times, hold_s):
-    """Return phases of a flexion by 60° that is held: there, and back, each with a rest about it."""
+    """Return phases of a flexion by 60° that is held: there, and back."""
     way = 60.0 * np.sin(np.linspace(0, np.pi / 2, round(RATE))) ** 2
     hold, rest = np.full(round(hold_s * RATE), 60.0), np.zeros(round(2 * RATE))
     angles, phases = [rest], []

@@ -39,9 +39,9 @@ N_AXES: Mapping[str, int] = {
     "ankle": 2,
 }
 
-ROOM: Mapping[str, float] = {
-    kind: 1.5 for kind in ("knee", "elbow", "ankle", "hip", "shoulder", "neck")
-}
+ROOM: Mapping[str, float] = dict.fromkeys(
+    ("knee", "elbow", "ankle", "hip", "shoulder", "neck"), 1.5
+)
 """How many times as uncertain as elsewhere an axis may be where the body's is farther off: 16° rms
 at knees, 8 to 37° at elbows, 19 to 41° at ankles of real people; 12, 12 and 9° at hips, shoulders
 and necks of synthetic ones; but 1 to 9° at the lumbar joint."""

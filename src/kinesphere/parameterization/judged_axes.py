@@ -155,8 +155,8 @@ def _contradicted(
 ) -> tuple[AxesQuality, Array, Array]:
     """Return the quality with what halves of the time contradict, and the most they do, (n,) rad.
 
-    The most holds halves, too, that are not alike enough to judge the whole, if each moves about one
-    axis at a time: walking about beside a calibration contradicts nothing. Last comes how far
+    The most holds halves, too, that are not alike enough to judge the whole, if each moves about
+    one axis at a time: walking about beside a calibration contradicts nothing. Last comes how far
     halves are apart that both move as far, however few phases one has; NaN where they do not.
     """
     halves = (half.samples for half in view_halves(view, settings))
