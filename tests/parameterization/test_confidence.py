@@ -24,7 +24,7 @@ def alternating(rng, calibration, **changes):
 
 def test_halves_of_one_joint_agree(rng, calibration):
     samples, halves = alternating(rng, calibration)
-    apart, arcs = contradiction(halves, search(samples)[1], search)
+    apart, arcs, _ = contradiction(halves, search(samples)[1], search)
     assert np.rad2deg(apart).max() < 1.0
     assert (np.rad2deg(arcs) > 50.0).all()  # of twice 40° to 45°, the extremes left out
 
@@ -32,21 +32,21 @@ def test_halves_of_one_joint_agree(rng, calibration):
 def test_halves_of_two_joints_contradict_each_other(rng, calibration):
     samples, halves = alternating(rng, calibration)
     _, others = alternating(rng, calibration)
-    apart, _ = contradiction([halves[0], others[1]], search(samples)[1], search)
+    apart, _, _ = contradiction([halves[0], others[1]], search(samples)[1], search)
     assert np.rad2deg(apart).max() > 20.0
 
 
 def test_the_smaller_arc_is_told(rng, calibration):
     samples, halves = alternating(rng, calibration)
     _, small = alternating(rng, calibration, amplitudes=(10.0, 9.0))
-    _, arcs = contradiction([halves[0], small[1]], search(samples)[1], search)
+    _, arcs, _ = contradiction([halves[0], small[1]], search(samples)[1], search)
     assert (np.rad2deg(arcs) < 21.0).all()
 
 
 def test_a_half_without_movement_tells_nothing(rng, calibration):
     samples, halves = alternating(rng, calibration)
     still = halves[1].with_phases(())
-    apart, arcs = contradiction([halves[0], still], search(samples)[1], search)
+    apart, arcs, _ = contradiction([halves[0], still], search(samples)[1], search)
     assert np.isnan(apart).all()
     assert_allclose(arcs, 0)
 
@@ -55,7 +55,7 @@ def test_a_half_that_lacks_one_movement_tells_of_the_other(rng, calibration):
     samples, halves = alternating(rng, calibration)
     axes = search(samples)[1]
     one = halves[1].with_phases(halves[1].phases[:2])  # about the first axis only
-    apart, arcs = contradiction([halves[0], one], axes, search)
+    apart, arcs, _ = contradiction([halves[0], one], axes, search)
     told = np.isfinite(apart)
     assert told.sum() == 1
     assert np.rad2deg(apart[told]) < 1.0
@@ -99,3 +99,13 @@ def test_conditioning_tells_how_many_times_larger_the_rotation_is(rng, calibrati
         mine = [v for v, at in zip(swings, quality.labels, strict=True) if at == k]
         sizes = np.linalg.svd(np.concatenate(mine), compute_uv=False)  # rad, not rad²
         assert told == pytest.approx(sizes[0] / sizes[1])
+
+
+def test_a_half_that_does_all_at_once_is_not_pure(rng, calibration):
+    samples, halves = alternating(rng, calibration)
+    axes = search(samples)[1]
+    *_, pure = contradiction(halves, axes, search)
+    assert (pure > 0.95).all()
+    mixed = halves[1].with_phases(((halves[1].phases[0][0], halves[1].phases[-1][1]),))
+    *_, pure = contradiction([halves[0], mixed], axes, search)
+    assert (pure < 0.9).all()

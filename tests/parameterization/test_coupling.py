@@ -8,7 +8,13 @@ from scipy.spatial.transform import Rotation
 from kinesphere.data import Joint, Limb, Motion, PoseFlag, Skeleton
 from kinesphere.parameterization.axes.refinement import other_readings, refine_axes
 from kinesphere.parameterization.confidence import with_skin
-from kinesphere.parameterization.coupling import Neighbours, circling, coupling, neighbours_of
+from kinesphere.parameterization.coupling import (
+    NEIGHBOURS,
+    Neighbours,
+    circling,
+    coupling,
+    neighbours_of,
+)
 from kinesphere.parameterization.movement_axes import movement_axes
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import ParameterizationSettings
@@ -162,8 +168,8 @@ def test_where_the_neighbour_moves_and_the_joint_hardly_does_skin_is_the_movemen
     samples = samples_of(ellipse(8.0, 0.0, 0.0))
     ranges = np.deg2rad([16.0])
     off = coupling(samples, AXES[1:], ranges, hip)
-    assert np.rad2deg(off) == pytest.approx([np.rad2deg(np.arctan2(0.07 * 60, 16))], rel=0.15)
-    assert np.rad2deg(with_skin(off, ranges))[0] > 15.0
+    assert np.rad2deg(off) == pytest.approx([np.rad2deg(np.arctan2(NEIGHBOURS * 60, 16))], rel=0.15)
+    assert np.rad2deg(with_skin(off, ranges))[0] > 13.0
     wide = coupling(samples, AXES[1:], np.deg2rad([90.0]), hip)
     assert np.rad2deg(wide)[0] < 3.0
     assert np.rad2deg(coupling(samples, AXES[1:], ranges, Neighbours()))[0] < 1.0

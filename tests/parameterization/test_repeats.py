@@ -58,11 +58,44 @@ def test_a_movement_done_on_and_on_is_repeated(times, pause_s, kept):
         assert abs(fit.axes[1] @ axis) > np.cos(np.deg2rad(2.0))
 
 
-def test_phases_count_once_at_least_and_those_about_nothing_not():
+def held(times, hold_s):
+    """Return phases of a flexion by 60° that is held: there, and back."""
+    way = 60.0 * np.sin(np.linspace(0, np.pi / 2, round(RATE))) ** 2
+    hold, rest = np.full(round(hold_s * RATE), 60.0), np.zeros(round(2 * RATE))
+    angles, phases = [rest], []
+    for _ in range(times):
+        start = sum(map(len, angles))
+        stop = start + 2 * len(way) + len(hold)
+        middle = (start + len(way), start + len(way) + len(hold))
+        phases += [(start, middle[0]), (middle[1], stop)] if hold_s else [(start, stop)]
+        angles += [way, hold, way[::-1], rest]
+    axis = body_axes("left_hip")[0]
+    vectors = np.deg2rad(np.concatenate(angles))[:, None] * axis
+    rotations = Rotation.from_rotvec(vectors).as_matrix()
+    return JointSamples(rotations, rotations @ DOWN, tuple(phases), RATE, DOWN), axis
+
+
+@pytest.mark.parametrize("times", [1, 2, 3])
+@pytest.mark.parametrize("hold_s", [0.0, 2.0])
+def test_there_and_back_is_once_however_long_it_is_held_between(times, hold_s):
+    samples, axis = held(times, hold_s)
+    assert len(samples.phases) == times * (2 if hold_s else 1)
+    assert repeats(samples, axis[None], np.zeros(len(samples.phases), int)) == times
+
+
+def test_both_ways_from_the_middle_and_back_is_once():
+    angles = np.deg2rad(30.0) * np.sin(np.linspace(0, 4 * np.pi, 400))
+    axis = body_axes("left_hip")[0]
+    rotations = Rotation.from_rotvec(angles[:, None] * axis).as_matrix()
+    samples = JointSamples(rotations, rotations @ DOWN, ((0, 200), (200, 400)), RATE, DOWN)
+    assert repeats(samples, axis[None], np.zeros(2, int)) == 2
+
+
+def test_part_of_a_stroke_and_phases_about_nothing_count_not():
     view, axis = bending(8, 0.0)
     samples: JointSamples = view.samples
     (phase,) = samples.phases
     assert repeats(samples, axis[None], np.zeros(1, int)) == 8
     assert repeats(samples, axis[None], np.full(1, -1)) == 0
     short = samples.with_phases((phase, (phase[0], phase[0] + 20)))
-    assert repeats(short, axis[None], np.zeros(2, int)) == 9
+    assert repeats(short, axis[None], np.zeros(2, int)) == 8

@@ -234,7 +234,7 @@ def test_a_shoulder_whose_halves_contradict_its_only_axis_has_the_bodys(recordin
     assert parameters.skeleton.joint("left_shoulder").axes_source == "body"
     said = findings(parameters, "left_shoulder")["doubts"]
     assert any("two halves of the data" in doubt for doubt in said)
-    assert parameters.skeleton.joint("right_hip").axes_sources == ("body", "movement")
+    assert parameters.skeleton.joint("right_hip").axes_sources == ("movement", "movement")
 
 
 def test_a_short_walk_tells_no_axes_of_free_motion(recordings):

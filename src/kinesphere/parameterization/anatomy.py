@@ -39,9 +39,12 @@ N_AXES: Mapping[str, int] = {
     "ankle": 2,
 }
 
-ROOM: Mapping[str, float] = {"knee": 1.5, "elbow": 1.5, "ankle": 1.5}
+ROOM: Mapping[str, float] = dict.fromkeys(
+    ("knee", "elbow", "ankle", "hip", "shoulder", "neck"), 1.5
+)
 """How many times as uncertain as elsewhere an axis may be where the body's is farther off: 16° rms
-at knees, 8 to 37° at elbows, 19 to 41° at ankles, but 1 to 9° at hips and lumbar."""
+at knees, 8 to 37° at elbows, 19 to 41° at ankles of real people; 12, 12 and 9° at hips, shoulders
+and necks of synthetic ones; but 1 to 9° at the lumbar joint."""
 UNNAMED_ROOM = 1.5  # the parent's axes know nothing of a joint that nobody named
 
 # Shares of thigh and shank together, 0.49 of the stature (Winter 2009, table 4.1), with room for

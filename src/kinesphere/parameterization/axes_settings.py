@@ -67,7 +67,7 @@ class AxesSettings:
     largest_uncertainty: float = setting(
         10.0,
         "standard deviation of an axis, half of that angle, from which on the body's axis serves; "
-        "at knees, elbows, ankles and where nobody named the joint, where the body's tells less, "
+        "at hips, knees, ankles, shoulders, elbows, necks and where nobody named the joint, "
         "1.5 times that; of a hinge three times, where its axis in free motion foretells the "
         "movement clearly better than the body's",
         unit="deg",

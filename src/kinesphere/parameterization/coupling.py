@@ -13,6 +13,9 @@ SHARE = 0.07
 """rad for a rad of the movement, that skin comes back about another axis, which turns the axis as
 much however long the arc; two knees of one person twist by 0.077 and 0.068 with their angle, which
 is such a share, of skin or not. About the limb itself `AxesQuality.readings` tells it."""
+NEIGHBOURS = 0.035
+"""rad for a rad of the joints beyond, that skin turns the limb: 0.032 at hips and 0.039 at
+shoulders of synthetic people who move all joints at once, beside what else puts their axes off."""
 MOST_JOINTS = 2  # of a limb whose skin turns with them; trunk and pelvis are too wide for that
 
 
@@ -117,8 +120,9 @@ def neighbours_of(motion: Motion) -> list[Neighbours]:
 def coupling(samples: JointSamples, axes: Array, ranges: Array, neighbours: Neighbours) -> Array:
     """Return how far other movement may put axes off that goes with their own, (n_axes,) rad.
 
-    Circling, and skin: of a joint's two limbs it also goes with their other joints, by `SHARE` of
-    how far those move. Where they do and the joint itself hardly does, skin is the movement.
+    Circling, and skin: of a joint's two limbs it also goes with their other joints, by
+    `NEIGHBOURS` of how far those move. Where they do and the joint itself hardly does, skin is
+    the movement.
 
     Parameters
     ----------
@@ -131,7 +135,7 @@ def coupling(samples: JointSamples, axes: Array, ranges: Array, neighbours: Neig
         Of the joint.
     """
     labels = phase_labels(samples, axes)
-    skin = SHARE * neighbours.arcs(samples, labels, len(axes))
+    skin = NEIGHBOURS * neighbours.arcs(samples, labels, len(axes))
     return np.asarray(
         np.hypot(circling(samples, axes, labels), np.arctan2(skin, np.maximum(ranges, 1e-9)))
     )

@@ -34,7 +34,7 @@ def reasons_to_doubt(
     if not np.isfinite(quality.halves).all():
         doubts.append("there is too little movement to compare two halves of it")
     elif np.rad2deg(quality.halves.max()) > 2 * s.largest_uncertainty:
-        doubts.append(apart(quality.halves))
+        doubts.append(apart(quality.halves, quality.ranges))
     elif np.rad2deg(quality.uncertainty.max()) > s.largest_uncertainty:
         doubts.append(uncertain(quality))
     if len(axes) > 1 and quality.explained < s.smallest_explained:
@@ -70,9 +70,15 @@ def reasons_to_doubt(
     return doubts
 
 
-def apart(halves: Array) -> str:
-    """Return how far axes from two halves differ, (n_axes,) rad, as a clause."""
-    return f"axes from two halves of the data differ by {np.rad2deg(halves.max()):.0f}°"
+def apart(halves: Array, ranges: Array) -> str:
+    """Return how far axes from two halves differ, (n_axes,) rad, as a clause.
+
+    Of several the arc that it covers, (n_axes,) rad, says which one it is, whatever its number.
+    """
+    worst = int(halves.argmax())
+    told = f"axes from two halves of the data differ by {np.rad2deg(halves[worst]):.0f}°"
+    which = f" about the one whose movement covers {np.rad2deg(ranges[worst]):.0f}°"
+    return told + which if len(halves) > 1 else told
 
 
 def uncertain(quality: AxesQuality, which: int | None = None) -> str:

@@ -40,8 +40,8 @@ def halves_disagreement(
 
 def contradiction(
     halves: Iterable[JointSamples], axes: Array, search: Searcher
-) -> tuple[Array, Array]:
-    """Return how far axes searched anew in each half of the time are apart, and the smaller arc.
+) -> tuple[Array, Array, Array]:
+    """Return how far axes searched anew in each half of the time are apart, arcs, and purity.
 
     As if each half were a recording of its own.
 
@@ -59,20 +59,27 @@ def contradiction(
         NaN where a half has no such axis.
     arcs : (n_axes,) rad
         How far the limb moves about each axis in the half where it moves less.
+    pure : (n_axes,)
+        Share of the phases' movement about each axis that is about it, in the half where that is
+        less: one in which the limb does all at once tells no axis.
     """
-    told, arcs = [], []
+    told, arcs, pure = [], [], []
     for half in halves:
         used, found = search(half) if half.phases else (half, np.empty((0, 3)))
         found = _matched(found, axes)
         known = np.isfinite(found[:, 0])
         told.append(found)
         arcs.append(np.zeros(len(axes)))
+        pure.append(np.zeros(len(axes)))
         if known.any():
-            labels = np.array(
-                [phase_swing(used, p).about(found[known]).argmax() for p in used.phases]
-            )
+            swings = [phase_swing(used, phase) for phase in used.phases]
+            about = np.array([swing.about(found[known]) for swing in swings])
+            labels = about.argmax(axis=1)
             arcs[-1][known] = arcs_about(used, found[known], labels)[0]
-    return _between(told[0], told[1]), np.minimum(arcs[0], arcs[1])
+            mine = labels[:, None] == np.arange(known.sum())
+            total = mine.T @ np.array([(swing.vectors**2).sum() for swing in swings])
+            pure[-1][known] = (about * mine).sum(axis=0) / np.maximum(total, 1e-300)
+    return _between(told[0], told[1]), np.minimum(arcs[0], arcs[1]), np.minimum(pure[0], pure[1])
 
 
 def early_share(samples: JointSamples, labels: Labels, n_axes: int, early: int, late: int) -> Array:

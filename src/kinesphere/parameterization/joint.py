@@ -88,7 +88,7 @@ def fit_joint(
         assumed = tuple(bool(np.isnan(u)) for u in uncertainty)
     elif quality is not None and len(axes) == n_axes and (not doubts or keep):
         axes, rest, order = movement_rest(view, axes, quality.heights, settings)
-        quality = quality.ordered(order)
+        quality = (found.kept or quality).ordered(order)
         uncertainty = quality.uncertainty
         if n_axes > 1:
             share, _ = reach_and_twist(view, axes, rest, settings)
@@ -155,12 +155,13 @@ def _one_and_across(
 
     None where not exactly one is told, or where the limb cannot be followed about the two.
     """
-    if found.told is None or found.quality is None:
+    kept = found.kept
+    if found.told is None or kept is None:
         return None
     axes, at = completed(found.axes[found.told], view.name, view.gravity)
     rest = body_rest(view, axes)
     share, _ = reach_and_twist(view, axes, rest, settings)
-    return None if share > OUT_OF_REACH else (axes, rest, found.quality.only(found.told, at))
+    return None if share > OUT_OF_REACH else (axes, rest, kept.only(found.told, at))
 
 
 def asked_n_axes(name: str, options: AxesSettings) -> int | None:

@@ -51,8 +51,18 @@ class MovementAxes:
     """Why these axes should not serve, each a clause."""
     remark: str = ""
     """What a person should know of axes that serve: how far two halves contradict each other."""
+    contradicted: Array | None = None
+    """(n_found,) rad, the most that any two halves are apart, also such as are no judges of the
+    whole; None where that was not asked."""
     told: int | None = None
     """Which of two axes serves although the other does not: `axis_told`."""
+
+    @property
+    def kept(self) -> AxesQuality | None:
+        """What is told of these axes where they serve: as uncertain as any two halves say."""
+        if self.quality is None or self.contradicted is None:
+            return self.quality
+        return replace(self.quality, halves=np.fmax(self.quality.halves, self.contradicted))
 
     def doubtful(self, options: AxesSettings) -> bool:
         """Return whether anything speaks against these axes."""
@@ -130,8 +140,8 @@ def judged(
                 f"halves of the time put the axis that is told {np.rad2deg(alone[told]):.0f}° apart"
             )
             told = None
-    remark = _remark(quality, apart_by, told, settings.axes)
-    return MovementAxes(axes, quality, tuple(doubts), remark, told)
+    remark = _remark(replace(quality, halves=apart_by), told, settings.axes)
+    return MovementAxes(axes, quality, tuple(doubts), remark, apart_by, told)
 
 
 def _contradicted(
@@ -145,11 +155,12 @@ def _contradicted(
 ) -> tuple[AxesQuality, Array, Array]:
     """Return the quality with what halves of the time contradict, and the most they do, (n,) rad.
 
-    The most holds halves, too, that are not alike enough to judge the whole. Last comes how far
+    The most holds halves, too, that are not alike enough to judge the whole, if each moves about
+    one axis at a time: walking about beside a calibration contradicts nothing. Last comes how far
     halves are apart that both move as far, however few phases one has; NaN where they do not.
     """
     halves = (half.samples for half in view_halves(view, settings))
-    off, arcs = contradiction(halves, axes, search)
+    off, arcs, pure = contradiction(halves, axes, search)
     comparable = arcs >= COMPARABLE * quality.ranges
     as_far = np.where(comparable, off, np.nan)
     if n_axes > 1:  # main movements are made one after another: a half may lack one
@@ -157,7 +168,11 @@ def _contradicted(
         shares = early_share(samples, quality.labels, len(axes), *half)
         comparable &= np.abs(shares - 0.5) <= 0.5 - LEAST_SHARE
     halves_apart = np.fmax(quality.halves, np.where(comparable, off, np.nan))
-    said = np.where(arcs >= np.deg2rad(settings.axes.smallest_range), off, 0.0)
+    options = settings.axes
+    judges = arcs >= np.deg2rad(options.smallest_range)
+    if not in_free_motion(n_axes, options):
+        judges &= pure >= options.purest
+    said = np.where(judges, off, 0.0)
     return replace(quality, halves=halves_apart), np.fmax(halves_apart, said), as_far
 
 
@@ -167,11 +182,11 @@ def with_room(options: AxesSettings, name: str) -> AxesSettings:
     return replace(options, largest_uncertainty=most)
 
 
-def _remark(quality: AxesQuality, apart_by: Array, told: int | None, options: AxesSettings) -> str:
+def _remark(quality: AxesQuality, told: int | None, options: AxesSettings) -> str:
     """Return how far halves contradict each other or how uncertain axes are; empty if hardly."""
     of = slice(None) if told is None else slice(told, told + 1)
-    if np.rad2deg(apart_by[of].max()) > options.largest_disagreement:
-        return apart(apart_by[of])
+    if np.rad2deg(quality.halves[of].max()) > options.largest_disagreement:
+        return apart(quality.halves[of], quality.ranges[of])
     if np.rad2deg(quality.uncertainty[of].max()) > options.largest_uncertainty:
         return uncertain(quality, told)
     return ""

@@ -14,8 +14,9 @@ STROKE = 0.6  # of the movement's range, from one turning point to the next
 def repeats(samples: JointSamples, axes: Array, labels: Labels) -> NDArray[np.intp]:
     """Return how often the movement about each axis is done, (n_axes,).
 
-    A phase counts once, or for as many cycles as it holds: somebody who bends eight times without
-    a rest has shown it eight times. A cycle is two strokes, each at least `STROKE` of the range.
+    As often as strokes, each at least `STROKE` of the range, make cycles of two. Somebody who bends
+    eight times without a rest has shown it eight times; who bends, holds, and comes back after a
+    rest, once. A phase that ends where it began is a cycle at least, however small its strokes.
 
     Parameters
     ----------
@@ -34,8 +35,17 @@ def repeats(samples: JointSamples, axes: Array, labels: Labels) -> NDArray[np.in
     for k, mine in enumerate(angles):
         if mine:
             widest = max(float(np.diff(np.percentile(a, PERCENTILES))[0]) for a in mine)
-            counts[k] = sum(max(1, (strokes(a, STROKE * widest) + 1) // 2) for a in mine)
+            made = sum(_strokes_of(a, STROKE * widest) for a in mine)
+            counts[k] = max(1, (made + 1) // 2)
     return counts
+
+
+def _strokes_of(angles: Array, least: float) -> int:
+    """Return the strokes of one phase, (n,), an even number where it ends near where it began."""
+    count = strokes(angles, least)
+    arc = float(np.diff(np.percentile(angles, PERCENTILES))[0])
+    closed = abs(float(angles[-1] - angles[0])) <= (1 - STROKE) * arc
+    return max(2, count + count % 2) if closed else count
 
 
 def strokes(angles: Array, least: float) -> int:
