@@ -120,6 +120,7 @@ def test_a_kept_axis_is_described_by_what_holds_of_it():
         loose="",
         added="",
         misfit="",
+        gave_way="",
         assumed=(),
         half_told=False,
         findings={},
