@@ -19,6 +19,9 @@ MODEL = "motion alone"
 AT_THE_JOINT = 0.06
 """m, how far a joint's centre may be from a marker over it: half a knee's width with the marker,
 and as much again."""
+POSED = 3
+"""Markers of a limb from which another limb's marker that is steady in it is at their joint: in two
+it keeps but two distances, and may be anywhere that moves little."""
 
 
 def tree_model(
@@ -49,8 +52,9 @@ def tree_model(
         edge = partition.forest.edge(body)
         parent, child = limb_of[edge.a], limb_of[edge.b]
         over = [m for m, there in visits.items() if {int(owner[m]), there} == {edge.a, edge.b}]
+        over = [m for m in over if len(partition.bodies[visits[m]]) >= POSED]
         landmark = Landmark(
-            weights={labels[m]: 1 / len(over) for m in over},
+            weights={labels[m]: 1 / max(len(over), 1) for m in over},
             spread=AT_THE_JOINT * too_large * size_share(costs.points * costs.unit / too_large),
             source=STEADY,
         )
