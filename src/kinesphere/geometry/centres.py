@@ -192,7 +192,7 @@ def _fit(
     share = averaging_share(view, x)
     seen = view.sightings.seen  # what is hidden is no look
     n_seen = round(float(seen.sum(axis=0).mean())) if seen.any() else len(seen)
-    # any four looks fit, whatever errs: that makes the rest worth less, but pulls the centre nowhere
+    # any four looks fit, whatever errs: the rest is worth less, but draws the centre nowhere
     over = overrated(share, n_seen, n_poses, hidden) * n_poses / max(n_poses - UNKNOWNS, 1)
     # and no number of poses tells a centre better than what lasts lets it be the same
     lasts = (1 - share) * _robust_noise(view, x) ** 2
