@@ -165,3 +165,21 @@ def test_four_looks_at_a_sphere_tell_nothing(rng):
         told.append(fit_centre(view, CENTRE, SPREAD).covariance)
     assert_allclose(told[0], SPREAD**2 * np.eye(3), rtol=1e-6)
     assert np.linalg.eigvalsh(told[1])[2] < 0.1 * SPREAD**2
+
+
+def test_few_looks_make_a_centre_less_sure_not_nearer_to_its_expectation(rng):
+    """Seen in a narrow cone it is known badly along that, and expected elsewhere there."""
+    strays, told = [], []
+    for _ in range(30):
+        directions = rng.normal(size=(8, 3)) * [0.35, 0.35, 0] + [0, 0, 1]
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+        seen = np.repeat(CENTRE + 0.3 * directions, 20, axis=0)
+        seen = (seen + rng.normal(scale=NOISE, size=seen.shape))[:, None]
+        view = View(seen, np.array([NOISE]), pose_covariance(PARENT, np.full(len(PARENT), 1e-9)))
+        expected = CENTRE + np.array([0, 0, 0.03])
+        fit = fit_centre(view, expected, SPREAD)
+        strays.append(fit.centre - CENTRE)
+        told.append(np.trace(fit.covariance))
+    squares = np.square(strays).sum(axis=1)
+    assert np.sqrt(squares.mean()) < 8.5e-3  # pulled by four looks fewer: 10 mm
+    assert np.sqrt((squares / told).mean()) < 1.35  # told as if all looks counted: 1.4

@@ -184,15 +184,16 @@ def _fit(
     if _has_skin(view):
         fit = fit_through_skin(view, x, expected, prior, n_poses, hidden=hidden, rounds=rounds)
         return fit.centre, fit.told
-    # any four looks fit; distances and orientation are two readings of the same sightings
-    n_poses = max(n_poses - UNKNOWNS, 0)
+    # distances and orientation are two readings of the same sightings
+    n_poses = n_poses if n_poses > UNKNOWNS else 0
     looks = n_poses / hidden**2 / (1 if turning is None else 2)
     x = descend(view, x, expected, prior, looks, rounds)
     information = find_information(view, x, looks)
     share = averaging_share(view, x)
     seen = view.sightings.seen  # what is hidden is no look
     n_seen = round(float(seen.sum(axis=0).mean())) if seen.any() else len(seen)
-    over = overrated(share, n_seen, n_poses, hidden)
+    # any four looks fit, whatever errs: the rest is worth less, but draws the centre nowhere
+    over = overrated(share, n_seen, n_poses, hidden) * n_poses / max(n_poses - UNKNOWNS, 1)
     # and no number of poses tells a centre better than what lasts lets it be the same
     lasts = (1 - share) * _robust_noise(view, x) ** 2
     return x, Told(information, over * information + lasts * information @ information)

@@ -19,6 +19,10 @@ MODEL = "motion alone"
 AT_THE_JOINT = 0.06
 """m, how far a joint's centre may be from a marker over it: half a knee's width with the marker,
 and as much again."""
+POSED = 3
+"""Markers of a limb at an end of the tree from which another's marker that is steady in it is at
+their joint: in two it keeps but two distances, and may be anywhere that moves little. Between two
+others such a limb has joints at both ends, and the marker aids its pose."""
 
 
 def tree_model(
@@ -44,13 +48,17 @@ def tree_model(
         )
         for body, limb in limb_of.items()
     )
+    edges = [partition.forest.edge(body) for body in list(limb_of)[1:]]
+    degrees = {body: sum(body in (e.a, e.b) for e in edges) for body in limb_of}
+    unposed = {b for b in limb_of if len(partition.bodies[b]) < POSED and degrees[b] == 1}
     joints = []
     for number, body in enumerate(list(limb_of)[1:], start=1):
         edge = partition.forest.edge(body)
         parent, child = limb_of[edge.a], limb_of[edge.b]
         over = [m for m, there in visits.items() if {int(owner[m]), there} == {edge.a, edge.b}]
+        over = [m for m in over if visits[m] not in unposed]
         landmark = Landmark(
-            weights={labels[m]: 1 / len(over) for m in over},
+            weights={labels[m]: 1 / max(len(over), 1) for m in over},
             spread=AT_THE_JOINT * too_large * size_share(costs.points * costs.unit / too_large),
             source=STEADY,
         )
