@@ -1,0 +1,161 @@
+"""Markers lost and found again where most are: who goes on in whom is settled near each break."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.data import Array, Mask
+from kinesphere.kernels.pair_distances import pair_moments
+
+GAPS = (0.1, 0.3, 0.6, 1.0, 1.6, 2.5, 4.0)
+"""s, gaps that are closed, short ones first: what is joined serves as a fellow for the longer."""
+STATISTICS = 12.0
+"""Hz, about: how often distances are looked at."""
+TOGETHER = 0.5
+"""s that two must be seen together before their distance is known to be steady."""
+NEAR, ENOUGH = 0.5, 0.1
+"""s at either side of a break in which distances are compared; for so long they must be seen."""
+STEADY, STEADIEST = 3.0, 0.008
+"""As where few are broken."""
+ALIKE = 0.005
+"""m, at a person's size."""
+OFF = 3.0
+"""A distance that changes by more than so many times its own wander speaks against."""
+LONG = 1.0
+"""s, gap over which three must agree, not two."""
+SPEED, SLACK = 3.0, 0.02
+"""m/s and m."""
+SMOOTH = 0.3
+"""s, longest gap over which motion alone may tell."""
+SURE = 3.0
+"""What could be meant else must be so many times farther than a marker strays from its way."""
+
+
+class Ends(NamedTuple):
+    """What is known at the beginnings or the ends of trajectories."""
+
+    frame: NDArray[np.intp]
+    near: Array
+    """(n, n) m, mean distance from each other one close to it; NaN where not seen enough."""
+    here: Array
+    """(n, 3) m, place."""
+
+
+def follow(markers: Array, rate: float) -> tuple[list[list[int]], Array]:
+    """Return chains of trajectories that are one marker each, in order of time, and them joined.
+
+    Gaps are closed from the shortest to the longest, again and again until nothing changes at one
+    length. At each break the distances from all that are steady with both, close before and after,
+    must be the same.
+
+    Parameters
+    ----------
+    markers : (n_frames, n, 3) m
+        At a person's size.
+    rate
+        Hz.
+    """
+    tracks = [[m] for m in range(markers.shape[1])]
+    points = markers.copy()
+    for gap in GAPS:
+        while True:
+            links = _links(points, rate, gap)
+            if not links:
+                break
+            tracks, points = _joined(tracks, points, links)
+    return tracks, points
+
+
+def _joined(
+    tracks: list[list[int]], points: Array, links: dict[int, int]
+) -> tuple[list[list[int]], Array]:
+    points = points.copy()
+    gone = set(links.values())
+    for a in links.keys() - gone:
+        b, whole = links.get(a), list(tracks[a])
+        while b is not None:
+            whole += tracks[b]
+            points[:, a] = np.where(np.isnan(points[:, a]), points[:, b], points[:, a])
+            b = links.get(b)
+        tracks[a] = whole
+    kept = [m for m in range(len(tracks)) if m not in gone]
+    return [tracks[m] for m in kept], np.ascontiguousarray(points[:, kept])
+
+
+def _links(points: Array, rate: float, longest: float) -> dict[int, int]:
+    """Return who goes on in whom, of those about whom there is no doubt."""
+    seen = np.isfinite(points).all(axis=2)
+    n_frames, n = seen.shape
+    first, last = seen.argmax(axis=0), n_frames - 1 - seen[::-1].argmax(axis=0)
+    wait = (first[None] - last[:, None]) / rate
+    possible = (wait > 0) & (wait <= longest + 1.5 / rate) & seen.any(axis=0)[:, None] & seen.any(axis=0)
+    a, b = np.nonzero(possible)
+    away = np.linalg.norm(points[first[b], b] - points[last[a], a], axis=1)
+    close = away <= SLACK + SPEED * wait[a, b]
+    a, b = a[close], b[close]
+    if not len(a):
+        return {}
+    wander = _wander(points, rate)
+    steadiest = np.nanmin(np.where(np.isnan(wander), np.inf, wander), axis=1)
+    known = steadiest[np.isfinite(steadiest)]
+    limit = min(STEADY * float(np.median(known)), STEADIEST) if len(known) else 0.0
+    before = _near(points, last, rate, -1, np.unique(a))
+    after = _near(points, first, rate, 1, np.unique(b))
+    steady = np.fmax(wander[a], wander[b])
+    steady[np.isnan(wander[a]) | np.isnan(wander[b])] = np.nan
+    change = np.abs(before[a] - after[b])
+    fellow = (steady <= limit) & np.isfinite(change)
+    agree = (fellow & (change <= ALIKE)).sum(axis=1)
+    against = (fellow & (change > np.fmax(ALIKE, OFF * steady))).sum(axis=1)
+    maybe = (agree >= 1) & (agree > against)
+    needed = np.where(wait[a, b] > LONG, 3, 2)
+    good = (agree >= needed) & (against == 0)
+    return _undoubted(a, b, good, maybe, first, last)
+
+
+def _undoubted(a, b, good, maybe, first, last) -> dict[int, int]:
+    nexts: dict[int, list[int]] = {}
+    befores: dict[int, list[int]] = {}
+    for i, j, m in zip(a.tolist(), b.tolist(), (good | maybe).tolist(), strict=True):
+        if m:
+            nexts.setdefault(i, []).append(j)
+            befores.setdefault(j, []).append(i)
+    links = {}
+    for i, j in zip(a[good].tolist(), b[good].tolist(), strict=True):
+        if all(k == j or first[k] > last[j] for k in nexts[i]) and all(
+            k == i or last[k] < first[i] for k in befores[j]
+        ):
+            links[i] = j
+    return links
+
+
+def _wander(points: Array, rate: float) -> Array:
+    step = max(1, round(rate / STATISTICS))
+    few = np.ascontiguousarray(points[::step])
+    n = points.shape[1]
+    count, total, _ = pair_moments(few, np.zeros((n, n)))
+    mean = total / np.maximum(count, 1)
+    count, total, squares = pair_moments(few, mean)
+    count[count * step < TOGETHER * rate] = np.nan
+    out: Array = np.sqrt(np.maximum(squares / count, 0))
+    np.fill_diagonal(out, np.nan)
+    return out
+
+
+def _near(points: Array, at: NDArray[np.intp], rate: float, way: int, of: NDArray[np.intp]) -> Array:
+    n_frames, n = points.shape[:2]
+    reach, step = round(NEAR * rate), max(1, round(rate / 25))
+    out = np.full((n, n), np.nan)
+    for m in of:
+        low, high = (at[m] - reach, at[m] + 1) if way < 0 else (at[m], at[m] + reach + 1)
+        part = points[max(low, 0) : min(high, n_frames) : step]
+        gap = part - part[:, m : m + 1]
+        away = np.sqrt(np.einsum("tni,tni->tn", gap, gap))
+        shown = np.isfinite(away)
+        often = shown.sum(axis=0)
+        sums = np.where(shown, away, 0).sum(axis=0)
+        enough = often * step >= ENOUGH * rate
+        out[m, enough] = sums[enough] / often[enough]
+    np.fill_diagonal(out, np.nan)
+    return out
