@@ -23,23 +23,30 @@ ALIKE = 0.005
 OFF = 3.0
 """A distance that changes by more than so many times its own wander speaks against."""
 LONG = 1.0
-"""s, gap over which three must agree, not two."""
+"""s, gap over which two are enough only if their distances change by no more than they wander."""
 SPEED, SLACK = 3.0, 0.02
 """m/s and m."""
 SMOOTH = 0.3
 """s, longest gap over which motion alone may tell."""
+STRAYS = 0.015
+"""m, and so far from where it would be, at most."""
+PACE = 0.08
+"""s over which a pace is measured."""
 SURE = 3.0
 """What could be meant else must be so many times farther than a marker strays from its way."""
 
 
-class Ends(NamedTuple):
-    """What is known at the beginnings or the ends of trajectories."""
+class Candidate(NamedTuple):
+    """Two trajectories that may be one."""
 
-    frame: NDArray[np.intp]
-    near: Array
-    """(n, n) m, mean distance from each other one close to it; NaN where not seen enough."""
-    here: Array
-    """(n, 3) m, place."""
+    a: int
+    b: int
+    """Begins after the first has ended."""
+    good: bool
+    agree: int
+    """Fellows that are as far away after the gap as before."""
+    stray: float
+    """m; NaN where not known."""
 
 
 def follow(markers: Array, rate: float) -> tuple[list[list[int]], Array]:
@@ -106,28 +113,75 @@ def _links(points: Array, rate: float, longest: float) -> dict[int, int]:
     steady[np.isnan(wander[a]) | np.isnan(wander[b])] = np.nan
     change = np.abs(before[a] - after[b])
     fellow = (steady <= limit) & np.isfinite(change)
-    agree = (fellow & (change <= ALIKE)).sum(axis=1)
+    agreeing = fellow & (change <= ALIKE)
+    agree = agreeing.sum(axis=1)
     against = (fellow & (change > np.fmax(ALIKE, OFF * steady))).sum(axis=1)
-    maybe = (agree >= 1) & (agree > against)
-    needed = np.where(wait[a, b] > LONG, 3, 2)
-    good = (agree >= needed) & (against == 0)
-    return _undoubted(a, b, good, maybe, first, last)
+    closely = (fellow & (change <= np.fmin(ALIKE, steady))).sum(axis=1)
+    beside = np.where(agreeing, steady, np.where(np.isfinite(change), 1 + before[a], np.inf))
+    stray = _stray(points, (a, last[a]), (b, first[b]), beside, rate)
+    room = np.fmin(_least(before[a]), _least(after[b]))
+    smooth = (wait[a, b] <= SMOOTH) & (stray <= np.fmin(room / SURE, STRAYS))
+    rigid = (agree >= 3) | (np.where(wait[a, b] > LONG, closely, agree) >= 2)
+    good = (rigid | smooth) & (against == 0)
+    maybe = good | (agree > against) | ((stray <= room) & (wait[a, b] <= SMOOTH))
+    candidates = [
+        Candidate(*each)
+        for each in zip(
+            a.tolist(), b.tolist(), good.tolist(), agree.tolist(), stray.tolist(), strict=True
+        )
+    ]
+    return _undoubted([c for c, m in zip(candidates, maybe, strict=True) if m], first, last)
 
 
-def _undoubted(a, b, good, maybe, first, last) -> dict[int, int]:
-    nexts: dict[int, list[int]] = {}
-    befores: dict[int, list[int]] = {}
-    for i, j, m in zip(a.tolist(), b.tolist(), (good | maybe).tolist(), strict=True):
-        if m:
-            nexts.setdefault(i, []).append(j)
-            befores.setdefault(j, []).append(i)
-    links = {}
-    for i, j in zip(a[good].tolist(), b[good].tolist(), strict=True):
-        if all(k == j or first[k] > last[j] for k in nexts[i]) and all(
-            k == i or last[k] < first[i] for k in befores[j]
-        ):
-            links[i] = j
-    return links
+def _undoubted(
+    candidates: list[Candidate], first: NDArray[np.intp], last: NDArray[np.intp]
+) -> dict[int, int]:
+    """Return the good ones that have no rival: none at the same time that is nearly as likely."""
+    nexts: dict[int, list[Candidate]] = {}
+    befores: dict[int, list[Candidate]] = {}
+    for c in candidates:
+        nexts.setdefault(c.a, []).append(c)
+        befores.setdefault(c.b, []).append(c)
+    return {
+        c.a: c.b
+        for c in candidates
+        if c.good
+        and all(o is c or first[o.b] > last[c.b] or _outdone(o, c) for o in nexts[c.a])
+        and all(o is c or last[o.a] < first[c.a] or _outdone(o, c) for o in befores[c.b])
+    }
+
+
+def _outdone(rival: Candidate, by: Candidate) -> bool:
+    """Return whether fellows, or the way itself, speak far more for the other one."""
+    return not rival.good and (
+        by.agree > 2 * rival.agree or (by.agree >= rival.agree and rival.stray > SURE * by.stray)
+    )
+
+
+def _stray(
+    points: Array,
+    end: tuple[NDArray[np.intp], NDArray[np.intp]],
+    start: tuple[NDArray[np.intp], NDArray[np.intp]],
+    beside: Array,
+    rate: float,
+) -> Array:
+    """Return how far apart both are where they would meet midway, m, seen from the best fellow."""
+    fellow = beside.argmin(axis=1)
+    some = max(2, round(PACE * rate))
+    half = (start[1] - end[1]) / 2
+    meet = []
+    for (m, at), way in ((end, -1), (start, 1)):
+        steps = np.arange(some + 1)
+        frames = at[:, None] + way * steps
+        inside = ((frames >= 0) & (frames < len(points)))[:, :, None]
+        frames = np.clip(frames, 0, len(points) - 1)
+        path = np.where(inside, points[frames, m[:, None]] - points[frames, fellow[:, None]], np.nan)
+        off = steps - steps.mean()
+        pace = np.einsum("k,mki->mi", off / (off @ off), path)
+        meet.append(path.mean(axis=1) - pace * (half + some / 2)[:, None])
+    stray: Array = np.linalg.norm(meet[0] - meet[1], axis=1)
+    stray[np.isinf(beside.min(axis=1))] = np.nan
+    return stray
 
 
 def _wander(points: Array, rate: float) -> Array:
@@ -159,3 +213,7 @@ def _near(points: Array, at: NDArray[np.intp], rate: float, way: int, of: NDArra
         out[m, enough] = sums[enough] / often[enough]
     np.fill_diagonal(out, np.nan)
     return out
+
+
+def _least(values: Array) -> Array:
+    return np.asarray(np.where(np.isnan(values), np.inf, values).min(axis=1))
