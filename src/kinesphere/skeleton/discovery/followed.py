@@ -22,7 +22,7 @@ ALIKE = 0.005
 """m, at a person's size."""
 OFF = 3.0
 """A distance that changes by more than so many times its own wander speaks against."""
-LONG = 1.0
+LONG = 0.3
 """s, gap over which two are enough only if their distances change by no more than they wander."""
 SPEED, SLACK = 3.0, 0.02
 """m/s and m."""
