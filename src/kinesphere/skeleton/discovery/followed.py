@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array, Mask
-from kinesphere.kernels.pair_distances import pair_moments
+from kinesphere.data import Array
+from kinesphere.kernels.pair_moments import pair_moments
 
 GAPS = (0.1, 0.3, 0.6, 1.0, 1.6, 2.5, 4.0)
 """s, gaps that are closed, short ones first: what is joined serves as a fellow for the longer."""
@@ -93,10 +93,12 @@ def _joined(
 def _links(points: Array, rate: float, longest: float) -> dict[int, int]:
     """Return who goes on in whom, of those about whom there is no doubt."""
     seen = np.isfinite(points).all(axis=2)
-    n_frames, n = seen.shape
+    n_frames = len(seen)
     first, last = seen.argmax(axis=0), n_frames - 1 - seen[::-1].argmax(axis=0)
     wait = (first[None] - last[:, None]) / rate
-    possible = (wait > 0) & (wait <= longest + 1.5 / rate) & seen.any(axis=0)[:, None] & seen.any(axis=0)
+    possible = (
+        (wait > 0) & (wait <= longest + 1.5 / rate) & seen.any(axis=0)[:, None] & seen.any(axis=0)
+    )
     a, b = np.nonzero(possible)
     away = np.linalg.norm(points[first[b], b] - points[last[a], a], axis=1)
     close = away <= SLACK + SPEED * wait[a, b]
@@ -175,7 +177,9 @@ def _stray(
         frames = at[:, None] + way * steps
         inside = ((frames >= 0) & (frames < len(points)))[:, :, None]
         frames = np.clip(frames, 0, len(points) - 1)
-        path = np.where(inside, points[frames, m[:, None]] - points[frames, fellow[:, None]], np.nan)
+        path = np.where(
+            inside, points[frames, m[:, None]] - points[frames, fellow[:, None]], np.nan
+        )
         off = steps - steps.mean()
         pace = np.einsum("k,mki->mi", off / (off @ off), path)
         meet.append(path.mean(axis=1) - pace * (half + some / 2)[:, None])
@@ -197,7 +201,9 @@ def _wander(points: Array, rate: float) -> Array:
     return out
 
 
-def _near(points: Array, at: NDArray[np.intp], rate: float, way: int, of: NDArray[np.intp]) -> Array:
+def _near(
+    points: Array, at: NDArray[np.intp], rate: float, way: int, of: NDArray[np.intp]
+) -> Array:
     n_frames, n = points.shape[:2]
     reach, step = round(NEAR * rate), max(1, round(rate / 25))
     out = np.full((n, n), np.nan)

@@ -1,9 +1,11 @@
 """How the distances between points that come and go are spread."""
 
 import numpy as np
+from numpy.typing import NDArray
 
-from kinesphere.data import Array
 from kinesphere.kernels.jit import kernel
+
+Array = NDArray[np.float64]
 
 
 @kernel
@@ -19,7 +21,7 @@ def pair_moments(points: Array, shift: Array) -> tuple[Array, Array, Array]:
 
     Returns
     -------
-    Count, sum and sum of squares, each (n, n) and symmetric.
+    Count, sum and sum of squares, each (n, n) and symmetric; 0 on the diagonal.
     """
     n_frames, n, _ = points.shape
     count, total, squares = np.zeros((n, n)), np.zeros((n, n)), np.zeros((n, n))
