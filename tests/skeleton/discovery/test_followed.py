@@ -78,15 +78,23 @@ def test_a_lone_marker_goes_on_where_its_way_leads_and_not_elsewhere():
 
 
 def test_lives_that_are_a_small_share_of_a_long_recording_are_no_reflections(person):
-    lives, of = in_lives(person.markers, np.random.default_rng(8), (0.05, 0.2), (0.8, 1.4))
+    few = person.markers[:, :16]
+    lives, of = in_lives(few, np.random.default_rng(8), (0.05, 0.2), (2.5, 3.5))
     labels = tuple(f"*{m}" for m in range(len(of)))
     recording = replace(person, markers=lives, labels=labels, residuals=None)
     whole_of = find_lives(recording, 0.5)
     assert all(of[piece] == of[whole] for piece, whole in whole_of.items())
-    assert len(whole_of) >= 0.8 * (len(of) - person.n_markers)
+    assert len(whole_of) >= 0.8 * (len(of) - few.shape[1])
     joined = with_lives_joined(recording, whole_of)
     assert joined.seen.sum() == recording.seen.sum()
     assert not joined.seen[:, [*whole_of]].any()
+
+
+def test_lives_too_short_to_tell_who_is_steady_stay_apart(person):
+    lives, of = in_lives(person.markers[:, :8], np.random.default_rng(8), (0.05, 0.2), (0.8, 1.4))
+    tracks, _ = follow(lives, person.rate)
+    assert all(len({of[m] for m in track}) == 1 for track in tracks)
+    assert len(tracks) >= 0.9 * len(of)
 
 
 def test_what_is_whole_is_not_touched(person):

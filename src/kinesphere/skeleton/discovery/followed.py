@@ -14,6 +14,9 @@ STATISTICS = 12.0
 """Hz, about: how often distances are looked at."""
 TOGETHER = 0.5
 """s that two must be seen together before their distance is known to be steady."""
+SHORTEST = 1.5
+"""s that either life must last: in less, what moves by itself seems steady. Lives of 0.8 to 1.4 s
+were joined wrongly."""
 NEAR, ENOUGH = 0.5, 0.1
 """s at either side of a break in which distances are compared; for so long they must be seen."""
 STEADY, STEADIEST = 3.0, 0.008
@@ -96,9 +99,8 @@ def _links(points: Array, rate: float, longest: float) -> dict[int, int]:
     n_frames = len(seen)
     first, last = seen.argmax(axis=0), n_frames - 1 - seen[::-1].argmax(axis=0)
     wait = (first[None] - last[:, None]) / rate
-    possible = (
-        (wait > 0) & (wait <= longest + 1.5 / rate) & seen.any(axis=0)[:, None] & seen.any(axis=0)
-    )
+    lasts = seen.sum(axis=0) >= SHORTEST * rate
+    possible = lasts[:, None] & lasts & (wait > 0) & (wait <= longest + 1.5 / rate)
     a, b = np.nonzero(possible)
     away = np.linalg.norm(points[first[b], b] - points[last[a], a], axis=1)
     close = away <= SLACK + SPEED * wait[a, b]

@@ -7,7 +7,7 @@ import numpy as np
 from kinesphere.data import Mask, Recording
 from kinesphere.geometry.lifetimes import longest_runs
 from kinesphere.skeleton.discovery.copies import with_pieces_joined
-from kinesphere.skeleton.discovery.followed import follow
+from kinesphere.skeleton.discovery.followed import SHORTEST, follow
 from kinesphere.skeleton.discovery.size import PERSON, subject_size
 from kinesphere.skeleton.discovery.spikes import without_spikes
 
@@ -27,7 +27,8 @@ def find_lives(recording: Recording, ghost_s: float) -> dict[int, int]:
     broken = seen.any(axis=0) & ~(seen[:1].any(axis=0) & seen[-1:].any(axis=0))
     if broken.sum() < 2:
         return {}
-    around = longest_runs(seen, 1) >= min(ghost_s * recording.rate, len(seen) / 2)
+    least = max(ghost_s, SHORTEST) * recording.rate
+    around = longest_runs(seen, 1) >= min(least, len(seen) / 2)
     columns = np.flatnonzero(around & seen.any(axis=0))
     if (broken[columns]).sum() < 2:
         return {}
