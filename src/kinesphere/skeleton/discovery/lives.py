@@ -24,21 +24,22 @@ def find_lives(recording: Recording, ghost_s: float) -> dict[int, int]:
         s; what is never around for so long is a reflection, and no piece.
     """
     seen: Mask = recording.seen
-    broken = seen.any(axis=0) & ~(seen[:1].any(axis=0) & seen[-1:].any(axis=0))
+    whole = seen[:1].any(axis=0) & seen[-1:].any(axis=0)
+    broken: Mask = np.asarray(seen.any(axis=0) & ~whole)
     if broken.sum() < 2:
         return {}
     least = max(ghost_s, SHORTEST) * recording.rate
     around = longest_runs(seen, 1) >= min(least, len(seen) / 2)
     columns = np.flatnonzero(around & seen.any(axis=0))
-    if (broken[columns]).sum() < 2:
+    if broken[columns].sum() < 2:
         return {}
     markers = without_spikes(recording.markers[:, columns])
     tracks, _ = follow(markers / (subject_size(markers) / PERSON), recording.rate)
     often = seen.sum(axis=0)
     lives: dict[int, int] = {}
     for track in tracks:
-        whole, *rest = sorted((int(columns[m]) for m in track), key=lambda c: (-often[c], c))
-        lives |= dict.fromkeys(rest, whole)
+        kept, *rest = sorted((int(columns[m]) for m in track), key=lambda c: (-often[c], c))
+        lives |= dict.fromkeys(rest, kept)
     return dict(sorted(lives.items()))
 
 
