@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array
+from kinesphere.data import Array, Mask
 from kinesphere.kernels.pair_moments import pair_moments
 
 GAPS = (0.1, 0.3, 0.6, 1.0, 1.6, 2.5, 4.0)
@@ -95,7 +95,7 @@ def _joined(
 
 def _links(points: Array, rate: float, longest: float) -> dict[int, int]:
     """Return who goes on in whom, of those about whom there is no doubt."""
-    seen = np.isfinite(points).all(axis=2)
+    seen: Mask = np.asarray(np.isfinite(points).all(axis=2))
     n_frames = len(seen)
     first, last = seen.argmax(axis=0), n_frames - 1 - seen[::-1].argmax(axis=0)
     wait = (first[None] - last[:, None]) / rate
