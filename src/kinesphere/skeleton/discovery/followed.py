@@ -6,19 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Mask
-from kinesphere.kernels.pair_moments import pair_moments
+from kinesphere.skeleton.discovery.breaks import least_of, near_of, stray_of, wander_of
 
 GAPS = (0.1, 0.3, 0.6, 1.0, 1.6, 2.5, 4.0)
 """s, gaps that are closed, short ones first: what is joined serves as a fellow for the longer."""
-STATISTICS = 12.0
-"""Hz, about: how often distances are looked at."""
-TOGETHER = 0.5
-"""s that two must be seen together before their distance is known to be steady."""
 SHORTEST = 1.5
 """s that either life must last: in less, what moves by itself seems steady. Lives of 0.8 to 1.4 s
 were joined wrongly."""
-NEAR, ENOUGH = 0.5, 0.1
-"""s at either side of a break in which distances are compared; for so long they must be seen."""
 STEADY, STEADIEST = 3.0, 0.008
 """As where few are broken."""
 ALIKE = 0.005
@@ -33,8 +27,6 @@ SMOOTH = 0.3
 """s, longest gap over which motion alone may tell."""
 STRAYS = 0.015
 """m, and so far from where it would be, at most."""
-PACE = 0.08
-"""s over which a pace is measured."""
 SURE = 3.0
 """What could be meant else must be so many times farther than a marker strays from its way."""
 
@@ -107,12 +99,12 @@ def _links(points: Array, rate: float, longest: float) -> dict[int, int]:
     a, b = a[close], b[close]
     if not len(a):
         return {}
-    wander = _wander(points, rate)
+    wander = wander_of(points, rate)
     steadiest = np.nanmin(np.where(np.isnan(wander), np.inf, wander), axis=1)
     known = steadiest[np.isfinite(steadiest)]
     limit = min(STEADY * float(np.median(known)), STEADIEST) if len(known) else 0.0
-    before = _near(points, last, rate, -1, np.unique(a))
-    after = _near(points, first, rate, 1, np.unique(b))
+    before = near_of(points, last, rate, -1, np.unique(a))
+    after = near_of(points, first, rate, 1, np.unique(b))
     steady = np.fmax(wander[a], wander[b])
     steady[np.isnan(wander[a]) | np.isnan(wander[b])] = np.nan
     change = np.abs(before[a] - after[b])
@@ -122,8 +114,8 @@ def _links(points: Array, rate: float, longest: float) -> dict[int, int]:
     against = (fellow & (change > np.fmax(ALIKE, OFF * steady))).sum(axis=1)
     closely = (fellow & (change <= np.fmin(ALIKE, steady))).sum(axis=1)
     beside = np.where(agreeing, steady, np.where(np.isfinite(change), 1 + before[a], np.inf))
-    stray = _stray(points, (a, last[a]), (b, first[b]), beside, rate)
-    room = np.fmin(_least(before[a]), _least(after[b]))
+    stray = stray_of(points, (a, last[a]), (b, first[b]), beside, rate)
+    room = np.fmin(least_of(before[a]), least_of(after[b]))
     smooth = (wait[a, b] <= SMOOTH) & (stray <= np.fmin(room / SURE, STRAYS))
     rigid = (agree >= 3) | (np.where(wait[a, b] > LONG, closely, agree) >= 2)
     good = (rigid | smooth) & (against == 0)
@@ -160,68 +152,3 @@ def _outdone(rival: Candidate, by: Candidate) -> bool:
     return not rival.good and (
         by.agree > 2 * rival.agree or (by.agree >= rival.agree and rival.stray > SURE * by.stray)
     )
-
-
-def _stray(
-    points: Array,
-    end: tuple[NDArray[np.intp], NDArray[np.intp]],
-    start: tuple[NDArray[np.intp], NDArray[np.intp]],
-    beside: Array,
-    rate: float,
-) -> Array:
-    """Return how far apart both are where they would meet midway, m, seen from the best fellow."""
-    fellow = beside.argmin(axis=1)
-    some = max(2, round(PACE * rate))
-    half = (start[1] - end[1]) / 2
-    meet = []
-    for (m, at), way in ((end, -1), (start, 1)):
-        steps = np.arange(some + 1)
-        frames = at[:, None] + way * steps
-        inside = ((frames >= 0) & (frames < len(points)))[:, :, None]
-        frames = np.clip(frames, 0, len(points) - 1)
-        path = np.where(
-            inside, points[frames, m[:, None]] - points[frames, fellow[:, None]], np.nan
-        )
-        off = steps - steps.mean()
-        pace = np.einsum("k,mki->mi", off / (off @ off), path)
-        meet.append(path.mean(axis=1) - pace * (half + some / 2)[:, None])
-    stray: Array = np.linalg.norm(meet[0] - meet[1], axis=1)
-    stray[np.isinf(beside.min(axis=1))] = np.nan
-    return stray
-
-
-def _wander(points: Array, rate: float) -> Array:
-    step = max(1, round(rate / STATISTICS))
-    few = np.ascontiguousarray(points[::step])
-    n = points.shape[1]
-    count, total, _ = pair_moments(few, np.zeros((n, n)))
-    mean = total / np.maximum(count, 1)
-    count, total, squares = pair_moments(few, mean)
-    count[count * step < TOGETHER * rate] = np.nan
-    out: Array = np.sqrt(np.maximum(squares / count, 0))
-    np.fill_diagonal(out, np.nan)
-    return out
-
-
-def _near(
-    points: Array, at: NDArray[np.intp], rate: float, way: int, of: NDArray[np.intp]
-) -> Array:
-    n_frames, n = points.shape[:2]
-    reach, step = round(NEAR * rate), max(1, round(rate / 25))
-    out = np.full((n, n), np.nan)
-    for m in of:
-        low, high = (at[m] - reach, at[m] + 1) if way < 0 else (at[m], at[m] + reach + 1)
-        part = points[max(low, 0) : min(high, n_frames) : step]
-        gap = part - part[:, m : m + 1]
-        away = np.sqrt(np.einsum("tni,tni->tn", gap, gap))
-        shown = np.isfinite(away)
-        often = shown.sum(axis=0)
-        sums = np.where(shown, away, 0).sum(axis=0)
-        enough = often * step >= ENOUGH * rate
-        out[m, enough] = sums[enough] / often[enough]
-    np.fill_diagonal(out, np.nan)
-    return out
-
-
-def _least(values: Array) -> Array:
-    return np.asarray(np.where(np.isnan(values), np.inf, values).min(axis=1))
