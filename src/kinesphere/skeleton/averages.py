@@ -17,6 +17,10 @@ def mean_seen(values: Array, axis: int = 0) -> Array:
 def median_seen(values: Array) -> Array:
     """Return the median along the first axis, NaN left out; NaN where all are NaN."""
     flat = values.reshape(len(values), -1)
-    columns = [column[np.isfinite(column)] for column in flat.T]
-    medians = [float(np.median(column)) if len(column) else np.nan for column in columns]
-    return np.array(medians).reshape(values.shape[1:])
+    ranked = np.sort(np.where(np.isfinite(flat), flat, np.nan), axis=0)  # NaN last
+    count = np.isfinite(ranked).sum(axis=0)
+    column = np.arange(flat.shape[1])
+    low = ranked[np.maximum(count - 1, 0) // 2, column]
+    high = ranked[np.minimum(count // 2, len(flat) - 1), column]
+    middle: Array = np.where(count % 2 == 1, low, (low + high) / 2)
+    return middle.reshape(values.shape[1:])

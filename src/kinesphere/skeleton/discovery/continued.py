@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from kinesphere.data import Array, Mask
 from kinesphere.geometry.even_frames import even_frames
+from kinesphere.skeleton.discovery.followed import follow
 
 FRAMES = 60
 """Frames of each life that are looked at, spread over it."""
@@ -43,6 +44,7 @@ def find_continued(markers: Array, rate: float, order: NDArray[np.intp]) -> dict
     What shares no frame is one marker if the second begins after the first has ended, keeps the
     distances that the first had from every marker both are steady with, two of them or one where no
     time is lost, begins about where the first was lost, and no other trajectory could be meant.
+    Short gaps are closed first (`follow`), where it is enough that others show beside the gap.
 
     Parameters
     ----------
@@ -62,24 +64,30 @@ def find_continued(markers: Array, rate: float, order: NDArray[np.intp]) -> dict
     broken = seen.any(axis=0) & ~(seen[0] & seen[-1])
     if broken.sum() < 2:
         return {}
-    lives = _lives(markers, seen)
-    steadiest = np.nanmin(np.where(np.isnan(lives.wander), np.inf, lives.wander), axis=1)
-    known = steadiest[np.isfinite(steadiest)]
-    if not len(known):
-        return {}
-    limit = min(STEADY * float(np.median(known)), STEADIEST)
-    follows = [
-        (int(a), int(b))
-        for a in np.flatnonzero(broken)
-        for b in np.flatnonzero(broken & (lives.first > lives.last[a]))
-        if _is_one(markers, rate, lives, int(a), int(b), limit)
-    ]
     often = seen.sum(axis=0)
+    tracks, joined = follow(markers, rate)
     pieces: dict[int, int] = {}
-    for group in _chains(follows, lives):
+    for chain in _chains(_follows(joined, rate), len(tracks)):
+        group = [m for track in chain for m in tracks[track]]
         whole, *rest = sorted(group, key=lambda m: (-often[m], order[m]))
         pieces |= dict.fromkeys(rest, whole)
     return dict(sorted(pieces.items()))
+
+
+def _follows(markers: Array, rate: float) -> tuple[list[tuple[int, int]], Lives]:
+    """Return which trajectories follow which, whatever the gap."""
+    seen: Mask = np.asarray(np.isfinite(markers).all(axis=2))
+    broken = seen.any(axis=0) & ~(seen[0] & seen[-1])
+    lives = _lives(markers, seen)
+    steadiest = np.nanmin(np.where(np.isnan(lives.wander), np.inf, lives.wander), axis=1)
+    known = steadiest[np.isfinite(steadiest)]
+    if not len(known) or broken.sum() < 2:
+        return [], lives
+    limit = min(STEADY * float(np.median(known)), STEADIEST)
+    steady = (lives.wander <= limit).astype(float)
+    later = broken[:, None] & broken & (lives.first > lives.last[:, None])
+    pairs = np.argwhere(later & (steady @ steady.T > 0)).tolist()
+    return [(a, b) for a, b in pairs if _is_one(markers, rate, lives, a, b, limit)], lives
 
 
 def _lives(markers: Array, seen: Mask) -> Lives:
@@ -118,15 +126,18 @@ def _is_one(markers: Array, rate: float, lives: Lives, a: int, b: int, limit: fl
     return not way > SLACK + SPEED * gap  # not known where the fellow is hidden just then
 
 
-def _chains(follows: list[tuple[int, int]], lives: Lives) -> list[list[int]]:
-    """Return groups of trajectories that all follow on each other; none where two live at once."""
-    groups: dict[int, set[int]] = {}
+def _chains(found: tuple[list[tuple[int, int]], Lives], n: int) -> list[list[int]]:
+    """Return groups of trajectories that all follow on each other; alone where two live at once."""
+    follows, lives = found
+    groups = {m: {m} for m in range(n)}
     for a, b in follows:
-        joined = groups.get(a, {a}) | groups.get(b, {b})
+        joined = groups[a] | groups[b]
         groups |= dict.fromkeys(joined, joined)
     chains = []
     for group in {id(group): group for group in groups.values()}.values():
         chain = sorted(group, key=lambda m: lives.first[m])
         if all(lives.last[a] < lives.first[b] for a, b in pairwise(chain)):
             chains.append(chain)
+        else:
+            chains += [[m] for m in chain]
     return chains

@@ -16,6 +16,7 @@ from kinesphere.skeleton.discovery.account import account_of, doubts_about
 from kinesphere.skeleton.discovery.continued import find_continued
 from kinesphere.skeleton.discovery.copies import find_copies, with_pieces, with_pieces_joined
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
+from kinesphere.skeleton.discovery.lives import find_lives, with_lives_joined
 from kinesphere.skeleton.discovery.names import settled
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
 from kinesphere.skeleton.discovery.rigidity import trimmed_share
@@ -77,6 +78,8 @@ def discover(
         root needs.
     """
     settings = settings or DiscoverySettings()
+    lives = find_lives(recording, settings.ghost_s)
+    recording = with_lives_joined(recording, lives)
     worth = worth_grouping(recording.seen, recording.rate, settings.ghost_s)
     columns = np.flatnonzero(worth)
     if len(columns) < 3:
@@ -97,6 +100,8 @@ def discover(
     if twice := [*copies, *pieces]:
         markers = np.delete(with_pieces_joined(markers, pieces), twice, axis=1)
         columns = np.delete(columns, twice)
+    named = recording.labels
+    continued |= {named[p]: continued.get(named[w], named[w]) for p, w in lives.items()}
     if later := find_continued(markers, recording.rate, columns):
         found_again = {
             recording.labels[columns[p]]: recording.labels[columns[w]] for p, w in later.items()
