@@ -121,8 +121,8 @@ def test_halves_that_move_as_far_contradict_an_axis_alone(
     assert fit.source == ("movement" if kept else "body")
     said = f"halves of the time put the axis that is told {apart_deg:.0f}° apart"
     assert kept or said in fit.doubts
-    if kept:
-        assert np.nanmax(np.rad2deg(fit.uncertainty)) > apart_deg / 2
+    if arc_deg < 35.0:  # half of what the whole moves: such halves judge nothing
+        assert np.nanmax(np.rad2deg(fit.uncertainty)) < 6.0
     if apart_deg == 11.0:
         assert fit.loose == "axes from two halves of the data differ by 11°"
         (uncertainty,) = np.rad2deg(fit.uncertainty[np.isfinite(fit.uncertainty)])

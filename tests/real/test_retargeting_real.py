@@ -31,7 +31,7 @@ def test_walking_stays_walking(walk, rig):
     assert row.heel_most_mm < 15
     assert row.slide_free_mm > 1
     assert row.arms_deg < 1e-6
-    assert row.legs_deg < 4
+    assert row.legs_deg < 5
     assert row.wrong_knees == 0
     assert row.turn_deg < 1.1 * row.turn_source_deg
     assert row.jerk_deg < 1.1 * row.jerk_source_deg

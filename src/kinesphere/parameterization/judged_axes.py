@@ -59,8 +59,12 @@ class MovementAxes:
 
     @property
     def kept(self) -> AxesQuality | None:
-        """What is told of these axes where they serve: as uncertain as any two halves say."""
-        if self.quality is None or self.contradicted is None:
+        """What is told of these axes where they serve: as uncertain as any two halves say.
+
+        One of two that is told alone has what halves say that move as far: others may lack its
+        movement, for main movements are made one after another.
+        """
+        if self.quality is None or self.contradicted is None or self.told is not None:
             return self.quality
         return replace(self.quality, halves=np.fmax(self.quality.halves, self.contradicted))
 
