@@ -51,6 +51,7 @@ def test_only_movement_counts():
     assert not too_short(told.with_phases(((0, 750),)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("between", "doubted"), [(25.0, True), (40.0, False)])
 def test_axes_almost_alike_are_not_two(between, doubted):
     rotations, _ = wide(between)

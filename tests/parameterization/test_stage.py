@@ -206,6 +206,7 @@ def test_halves_that_differ_a_little_are_said_and_their_axes_kept(performance):
     assert "differ" in findings(solved, "left_knee")["doubts"][-1]
 
 
+@pytest.mark.slow
 def test_free_motion_without_twist_suits_the_universal_joint():
     performance = make_performance(
         np.random.default_rng(7), rate=25.0, calibration_s=0.0, free_s=20.0
