@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from kinesphere.data import Array, Codes, Mask, PoseFlag
-from kinesphere.normalization.anatomy import Anatomy
+from kinesphere.normalization.anatomy import CANONICAL, Anatomy, without_side
 from kinesphere.normalization.averaging import robust_mean_rotations
 from kinesphere.normalization.limb_frames import canonical_direction, minimal_frame, paper_frame
 from kinesphere.normalization.limb_lines import lacks_heel
 from kinesphere.normalization.samples import Samples
-from kinesphere.normalization.soles import levelling, turned_by
+from kinesphere.normalization.soles import levelling, stands, turned_by
 from kinesphere.normalization.vectors import angle_between
 
 _NEAR = np.deg2rad(5.0)  # postures this much farther from the ideal than the best still count
@@ -91,7 +91,7 @@ def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Ali
         found.turns[limb] = base_from_limb.T @ base_from_new
         found.shifts[limb] = np.nan_to_num(anatomy.mid_point(limb))
         found.off_ideal[name] = off
-        if _is_foot(anatomy, limb, base_from_limb):
+        if _is_foot(samples, limb, base_from_limb):
             foot, begin = anatomy.skeleton.limbs[limb], anatomy.proximal_ends[limb]
             if lacks_heel(foot, begin, anatomy.directions[limb]):
                 seen = np.isfinite(foot.marker_positions).all(axis=1)
@@ -139,13 +139,18 @@ def _frame(
     return minimal_frame(points, ideal), ideal, off
 
 
-def _is_foot(anatomy: Anatomy, limb: int, base_from_limb: Array) -> bool:
-    """Return whether a limb ends a chain and ideally points forward, whatever its name."""
+def _is_foot(samples: Samples, limb: int, base_from_limb: Array) -> bool:
+    """Return whether a limb ends a chain as a foot: by its name, or as the body stands on it.
+
+    Of a nameless limb that ideally points forward; an arm or a tail may do that, too.
+    """
+    anatomy = samples.anatomy
     line, at_end = anatomy.directions[limb], not anatomy.distal_joints[limb]
     if not at_end or not np.isfinite(line).all():
         return False
     name = anatomy.skeleton.limb_names[limb]
-    return bool(canonical_direction(name, base_from_limb @ line, at_end=at_end)[0] == 1.0)
+    ahead = canonical_direction(name, base_from_limb @ line, at_end=at_end)[0] == 1.0
+    return bool(ahead and (without_side(name) in CANONICAL or stands(samples, limb)))
 
 
 def _mean_poses(bases: Array, rotations: Array) -> Array:
