@@ -87,7 +87,7 @@ def stands(samples: Samples, limb: int) -> bool:
         return False
     ends = [i for i, n in enumerate(carried) if n == 0]
     levels = [_level(samples, i) for i in ends]
-    return _level(samples, limb) <= np.nanmin(levels) + _LEVEL * anatomy.span
+    return bool(_level(samples, limb) <= np.nanmin(levels) + _LEVEL * anatomy.span)
 
 
 def levelling(samples: Samples, bare: Sequence[int], heeled: Sequence[int]) -> dict[int, float]:
