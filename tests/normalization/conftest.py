@@ -80,6 +80,7 @@ def make_doll(
     rate=50.0,
     scale=1.0,
     scramble=True,
+    paired=False,
 ):
     """Build a doll.
 
@@ -87,6 +88,7 @@ def make_doll(
     ``stance``: limb → direction in its default pose; ``bends``: limb → (n_frames, 3) rotation
     vectors in the body frame by which it and all it carries leave that pose; ``world``: (n_frames,
     3, 3) or (3, 3) where the body frame points; ``walk``: (n_frames, 3) m.
+    ``paired``: labels of left and right differ in their side alone, though no markers are mirrored.
     """
     bends = bends or {}
     world = np.broadcast_to(np.eye(3) if world is None else world, (n_frames, 3, 3))
@@ -131,7 +133,10 @@ def make_doll(
             Limb(
                 name=name,
                 parent=parent,
-                markers=tuple(f"{name}{m}" for m in range(len(markers))),
+                markers=tuple(
+                    f"{name}{m if paired or not name.startswith('right') else m + 10}"
+                    for m in range(len(markers))
+                ),
                 marker_positions=(markers - origin) @ turn,
                 length=scale * length,
                 long_axis=turn.T @ ways[name],

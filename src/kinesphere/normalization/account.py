@@ -11,8 +11,9 @@ from kinesphere.normalization.samples import Samples
 
 _WIDE = np.deg2rad(10.0)  # spread of the body frames from which their mean is in doubt
 
-MIRRORED = 5.0
-"""deg by which a foot that is the other's mirror image may be off."""
+MIRRORED, BY_ONE = 8, 20
+"""deg by which a foot may be off that is the other's mirror image, and by a single marker of it:
+1.1 to 8.4° and 1.3 to 27° where one marker of a real foot was left out."""
 
 _CROOKED = np.deg2rad(45.0)
 """rad, from where a limb points in the ideal default position, from which on that is said."""
@@ -56,6 +57,7 @@ def _feet(alignment: Alignment) -> list[str]:
     """Return what the frames of feet rest on that lack a heel, or markers of the other foot."""
     levelled: list[str] = []
     lines: list[str] = []
+    heels: list[str] = []
     said: list[str] = []
     for name, foot in alignment.feet.items():
         on = f"{name} ({', '.join(foot.on)})"
@@ -63,15 +65,17 @@ def _feet(alignment: Alignment) -> list[str]:
             said.append(
                 f"{name} has no marker like {', '.join(foot.missing)} of {foot.lender}: its long "
                 f"axis is that foot's, mirrored onto {', '.join(foot.on)}, and may be "
-                f"{MIRRORED:g} deg off"
+                f"{MIRRORED if len(foot.on) > 1 else BY_ONE} deg off"
             )
         elif foot.backward:
-            said.append(
-                f"the long axis of a foot is told by markers at its heel alone; it is level, from "
-                f"them past the ankle, and may be 20 deg off: {on}"
-            )
+            heels.append(on)
         elif foot.bare:
             (lines if foot.pitch is None else levelled).append(on)
+    if heels:
+        said.append(
+            "the long axis of a foot is told by markers at its heel alone; it is level, from them "
+            f"past the ankle, and may be 30 deg off: {', '.join(heels)}"
+        )
     ahead = "the long axis of a foot is told by markers ahead of its ankle alone, none is at the "
     if levelled:
         said.append(

@@ -97,9 +97,11 @@ def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Ali
         found.turns[limb] = feet[limb].T @ base_from_new
         found.off_ideal[name], found.feet[name] = off, foot
         if foot.lender or foot.backward:
-            reach = np.nan_to_num(foot.length) / 2
-            found.lengths[limb] = foot.length
-            found.shifts[limb] = anatomy.proximal_ends[limb] + reach * feet[limb].T @ foot.points
+            half = foot.length / 2 * feet[limb].T @ foot.points
+            found.lengths[limb], found.shifts[limb] = (
+                foot.length,
+                anatomy.proximal_ends[limb] + half,
+            )
     return found
 
 

@@ -20,7 +20,7 @@ class Foot:
     points: Array
     """(3,) unit vector in the body frame."""
     length: float
-    """m from the ankle to the toes; NaN where unknown."""
+    """m from the ankle to the toes, or to what markers there are; NaN where unknown."""
     on: tuple[str, ...]
     """Its markers."""
     bare: bool = False
@@ -88,4 +88,4 @@ def _own(anatomy: Anatomy, limb: int, pose: Array) -> Foot:
     ahead = -points * [1.0, 0.0, 1.0]
     if not own.bare or ahead[0] <= 0:
         return own
-    return replace(own, points=ahead / np.linalg.norm(ahead), length=np.nan, backward=True)
+    return replace(own, points=ahead / np.linalg.norm(ahead), backward=True)

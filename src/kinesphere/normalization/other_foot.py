@@ -7,8 +7,11 @@ from kinesphere.data.label_sides import mirror_pairs
 from kinesphere.normalization.anatomy import Anatomy
 
 _MIRROR = np.diag([1.0, 1.0, -1.0])  # of the body frame, left onto right
-_ALIKE = 0.03
-"""m, what an error of markers (5 mm) is worth beside how unlike two feet stand (10°)."""
+_ALIKE = 0.2
+"""lengths of the foot: an error of markers (5 mm) beside how unlike two feet stand (10°)."""
+_MISFIT = 0.2
+"""lengths of the foot, rms, from which on labels that look alike are not of mirrored markers: it is
+0.02 to 0.17 of real feet."""
 
 
 def lent_line(
@@ -37,7 +40,8 @@ def lent_line(
     missing
         Markers of the other foot that this one has none like.
 
-        None where they have no markers in common, or not all that this one has, or none is missing.
+        None where they have no markers in common, or not all that this one has, or none is missing;
+        and where the markers do not lie as their mirror images do.
     """
     own, theirs = (_from_ankle(anatomy, i, at) for i, at in ((limb, pose), (other, other_pose)))
     pairs = mirror_pairs((*own, *theirs))
@@ -47,10 +51,14 @@ def lent_line(
         return None
     goal = np.array([own[label] for label in partner])
     mirrored = np.array([theirs[label] for label in partner.values()]) @ _MIRROR
-    u, _, vt = np.linalg.svd(goal.T @ mirrored + _ALIKE**2 * np.eye(3))
+    length = float(np.linalg.norm(anatomy.distal_ends[other] - anatomy.proximal_ends[other]))
+    points = _MIRROR @ other_pose @ anatomy.directions[other]
+    if not np.isfinite([length, *points]).all():
+        return None
+    u, _, vt = np.linalg.svd(goal.T @ mirrored + (_ALIKE * length) ** 2 * np.eye(3))
     turn = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt
-    points = turn @ _MIRROR @ other_pose @ anatomy.directions[other]
-    return (points, missing) if np.isfinite(points).all() else None
+    off = np.sqrt(np.square(goal - mirrored @ turn.T).sum(axis=1).mean())
+    return (turn @ points, missing) if off <= _MISFIT * length else None
 
 
 def _from_ankle(anatomy: Anatomy, limb: int, pose: Array) -> dict[str, Array]:
