@@ -40,7 +40,7 @@ def describe_recording(recording: Recording, subject: str | None = None) -> dict
     }
     chosen = choose_model(recording, subject)
     read = recording.history[0] if recording.history else None
-    times = told_unit(tuple(check_unit(recording))) if recording.seen.any() else 1.0
+    times = told_unit(tuple(check_unit(recording)))
     found = check_at_size(recording, times)
     return {
         "kind": "recording",

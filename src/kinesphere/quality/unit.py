@@ -39,6 +39,8 @@ _DIGITS = 4
 
 def check_unit(recording: Recording) -> Iterator[Finding]:
     """Yield bodies and clouds of markers that are too large or too small, and how many times."""
+    if not recording.seen.any():
+        return
     heights = _heights(recording)
     low, high = BODY_HEIGHT
     for height in heights:
