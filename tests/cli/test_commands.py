@@ -122,7 +122,7 @@ def test_info_tells_how_many_times_too_large_lengths_are(call, recording, tmp_pa
     shown = json.loads(ok(call("info", file, "--json")))
     assert shown["times_too_large"] == 25.4
     (unit,) = [found for found in shown["findings"] if found["rule"] == "unit"]
-    assert "25.4 times too large" in unit["remedy"]
+    assert unit["remedy"].endswith("; lengths of a person would be 25.4 times too large")
     assert {found["rule"] for found in shown["findings"]} <= {"unit", "far", "gap"}
     assert "likely wrong: lengths are 25.4 times too large" in ok(call("info", file))
 

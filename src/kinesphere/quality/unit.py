@@ -88,7 +88,7 @@ def _finding(what: str, told: tuple[str, float], times: float) -> Finding:
     remedy = "check the length unit of the file"
     if times != 1:
         numbers = (*numbers, ("times_too_large", float(f"{times:.{_DIGITS}g}")))
-        remedy += f": of a person lengths are likely {times_in_words(times)}"
+        remedy += f"; lengths of a person would be {times_in_words(times)}"
     return Finding("unit", "warning", what, remedy, numbers=numbers)
 
 
