@@ -1,5 +1,7 @@
 """The line of a foot that lacks markers which the other foot has: as that one's, mirrored."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from kinesphere.data import Array
@@ -41,13 +43,14 @@ def lent_line(
         Markers of the other foot that this one has none like.
 
         None where they have no markers in common, or not all that this one has, or none is missing;
-        and where the markers do not lie as their mirror images do.
+        and where the markers do not lie as their mirror images do, or are but numbered, which does
+        not tell where on a foot one is.
     """
     own, theirs = (_from_ankle(anatomy, i, at) for i, at in ((limb, pose), (other, other_pose)))
     pairs = mirror_pairs((*own, *theirs))
     partner = {a: b for pair in pairs for a, b in (pair, pair[::-1]) if a in own and b in theirs}
     missing = tuple(label for label in theirs if label not in partner.values())
-    if not own or len(partner) < len(own) or not missing:
+    if not own or len(partner) < len(own) or not missing or _numbered(theirs):
         return None
     goal = np.array([own[label] for label in partner])
     mirrored = np.array([theirs[label] for label in partner.values()]) @ _MIRROR
@@ -59,6 +62,12 @@ def lent_line(
     turn = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt
     off = np.sqrt(np.square(goal - mirrored @ turn.T).sum(axis=1).mean())
     return (turn @ points, missing) if off <= _MISFIT * length else None
+
+
+def _numbered(labels: Iterable[str]) -> bool:
+    """Return whether labels differ by a number alone, as those of a cluster do."""
+    parts = [(label.rstrip("0123456789"), label) for label in labels]
+    return len({stem for stem, _ in parts}) == 1 and all(stem != label for stem, label in parts)
 
 
 def _from_ankle(anatomy: Anatomy, limb: int, pose: Array) -> dict[str, Array]:

@@ -33,7 +33,7 @@ WHOLE = 20
 STATURES = 3.0
 """rms distances of a person's markers from their middle in a stature."""
 _FRAMES = 30  # that tell how far markers are apart
-_OF_ONE = (2.5, 12.0)  # of these two distances, the one in the other: 3.0 to 9.4 of one person
+_OF_ONE = (2.0, 12.0)  # of these two distances, the one in the other: 2.4 to 9.5 of one person
 _DIGITS = 4
 
 
