@@ -321,6 +321,17 @@ def test_of_a_nameless_chain_alone_nothing_tells_that_its_end_is_a_foot(doll, to
         assert step.findings["feet_without_heel"] == feet
 
 
+def test_of_a_nameless_body_that_lies_on_its_side_nothing_stands(doll, tools):
+    """One foot is as low as anything of the body, and is not what it stands on."""
+    side = Rotation.from_euler("x", 90, degrees=True).as_matrix()
+    it = doll(tools.legs, world=side)
+    bare = without_markers(it.motion, "left_foot", slice(0, 4))
+    bare = without_markers(bare, "right_foot", slice(0, 4))
+    assert told_of_heels(bare)[1] == ["left_foot", "right_foot"]
+    step = step_of(normalize(tools.renamed(bare), facing="+x"))
+    assert step.findings["feet_without_heel"] == []
+
+
 def test_a_nameless_foot_that_is_held_up_beside_the_other_is_not_known(doll, tools):
     lifted = np.tile([0.0, 0.0, 1.2], (7, 1))
     bends = {"left_thigh": lifted, "left_shank": -lifted}

@@ -55,10 +55,12 @@ def test_a_crowd_is_no_giant(person):
     assert (n, told) == (1, 1.0)  # wrong, by how much nothing tells
 
 
-def test_of_a_limb_it_is_not_told_how_many_times(person):
+@pytest.mark.parametrize("count", [9, 19])
+def test_of_a_limb_it_is_not_told_how_many_times(person, count):
     """A few markers may be those of an arm, which is as large as it is."""
     few = unlabelled(person)
-    few = replace(few, markers=few.markers[:, :9], labels=few.labels[:9])
+    few = replace(few, markers=few.markers[:, ::2], labels=few.labels[::2])
+    few = replace(few, markers=few.markers[:, :count], labels=few.labels[:count])
     assert times(few, 1.0)[0] == 0
     assert times(few, 1000.0) == (1, 1.0)
 
