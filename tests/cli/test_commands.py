@@ -115,6 +115,18 @@ def test_info_in_words(call, trc):
     assert "[red]X[/red]" in out
 
 
+def test_info_tells_how_many_times_too_large_lengths_are(call, recording, tmp_path):
+    file = tmp_path / "inches.trc"
+    plain = replace(recording, markers=recording.markers[:, :-1], labels=recording.labels[:-1])
+    write(replace(plain, markers=plain.markers * 25.4), file)
+    shown = json.loads(ok(call("info", file, "--json")))
+    assert shown["times_too_large"] == 25.4
+    (unit,) = [found for found in shown["findings"] if found["rule"] == "unit"]
+    assert unit["remedy"].endswith("; lengths of a person would be 25.4 times too large")
+    assert {found["rule"] for found in shown["findings"]} <= {"unit", "far", "gap"}
+    assert "likely wrong: lengths are 25.4 times too large" in ok(call("info", file))
+
+
 def test_info_of_a_c3d(call, c3d):
     shown = json.loads(ok(call("info", c3d, "--json")))
     assert shown["read"]["format"].upper() == "C3D"

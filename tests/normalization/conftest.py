@@ -36,6 +36,8 @@ PLAN |= {
 LEGS = ("pelvis", *(n for n in PLAN if n.endswith(("thigh", "shank", "foot"))))
 """The lower half of the doll."""
 
+PLACES = ("toe", "inner", "outer", "arch", "heel")
+
 STANCE = {
     "left_upper_arm": (0.02, -1.0, -0.25),
     "right_upper_arm": (0.04, -1.0, 0.20),
@@ -80,6 +82,7 @@ def make_doll(
     rate=50.0,
     scale=1.0,
     scramble=True,
+    paired=False,
 ):
     """Build a doll.
 
@@ -87,6 +90,7 @@ def make_doll(
     ``stance``: limb → direction in its default pose; ``bends``: limb → (n_frames, 3) rotation
     vectors in the body frame by which it and all it carries leave that pose; ``world``: (n_frames,
     3, 3) or (3, 3) where the body frame points; ``walk``: (n_frames, 3) m.
+    ``paired``: labels name places, though no markers of left and right are mirrored.
     """
     bends = bends or {}
     world = np.broadcast_to(np.eye(3) if world is None else world, (n_frames, 3, 3))
@@ -131,7 +135,9 @@ def make_doll(
             Limb(
                 name=name,
                 parent=parent,
-                markers=tuple(f"{name}{m}" for m in range(len(markers))),
+                markers=tuple(
+                    f"{name}_{PLACES[m]}" if paired else f"{name}{m}" for m in range(len(markers))
+                ),
                 marker_positions=(markers - origin) @ turn,
                 length=scale * length,
                 long_axis=turn.T @ ways[name],

@@ -297,6 +297,52 @@ def test_a_foot_without_a_heel_is_told_and_by_which_markers_it_points(doll, tool
     assert feet[0] in said
 
 
+@pytest.mark.parametrize("held", ["left_forearm", "tail"])
+def test_a_nameless_end_that_hangs_in_the_air_has_no_heel_to_lack(doll, tools, held):
+    """It points forward like a foot; the feet beside it are told, for the body stands on them."""
+    tail = ("pelvis", (-0.1, 0.0, 0.0), 0.3, (1.0, 0.0, 0.0))
+    plan = {name: of for name, of in tools.plan.items() if not name.endswith("left_hand")}
+    plan |= {"tail": tail} if held == "tail" else {}
+    stance = tools.stance | {held: (1.0, -0.1, 0.0)}
+    it = doll(tuple(plan), plan=plan, stance=stance)
+    bare = without_markers(it.motion, "left_foot", slice(0, 4))
+    foot = f"limb_{it.index('left_foot') + 1:02d}"
+    assert told_of_heels(tools.renamed(bare))[1] == [foot]
+
+
+@pytest.mark.parametrize("height", [0.0, 1.0])
+def test_of_a_nameless_chain_alone_nothing_tells_that_its_end_is_a_foot(doll, tools, height):
+    """It may be a leg or an arm; named it is a foot."""
+    names = ("pelvis", "left_thigh", "left_shank", "left_foot")
+    it = doll(names, walk=np.full((7, 3), height))
+    bare = without_markers(it.motion, "left_foot", slice(0, 4))
+    for motion, feet in ((bare, ["left_foot"]), (tools.renamed(bare), [])):
+        step = step_of(normalize(motion, facing="+x"))
+        assert step.findings["feet_without_heel"] == feet
+
+
+def test_of_a_nameless_body_that_lies_on_its_side_nothing_stands(doll, tools):
+    """One foot is as low as anything of the body, and is not what it stands on."""
+    side = Rotation.from_euler("x", 90, degrees=True).as_matrix()
+    it = doll(tools.legs, world=side)
+    bare = without_markers(it.motion, "left_foot", slice(0, 4))
+    bare = without_markers(bare, "right_foot", slice(0, 4))
+    assert told_of_heels(bare)[1] == ["left_foot", "right_foot"]
+    step = step_of(normalize(tools.renamed(bare), facing="+x"))
+    assert step.findings["feet_without_heel"] == []
+
+
+def test_a_nameless_foot_that_is_held_up_beside_the_other_is_not_known(doll, tools):
+    lifted = np.tile([0.0, 0.0, 1.2], (7, 1))
+    bends = {"left_thigh": lifted, "left_shank": -lifted}
+    it = doll(bends=bends)
+    bare = without_markers(it.motion, "left_foot", slice(0, 4))
+    bare = without_markers(bare, "right_foot", slice(0, 4))
+    assert told_of_heels(bare)[1] == ["left_foot", "right_foot"]
+    right = f"limb_{it.index('right_foot') + 1:02d}"
+    assert told_of_heels(tools.renamed(bare))[1] == [right]
+
+
 def test_a_foot_without_markers_is_not_said_to_lack_a_heel(doll):
     it = doll()
     bare = without_markers(it.motion, "left_foot", slice(0, 0))

@@ -13,13 +13,12 @@ from kinesphere.parameterization.movement_filter import (
     drop_short,
     find_movement,
     hysteresis,
-    paper_threshold,
     sample_speeds,
     trim,
-    valley_threshold,
 )
 from kinesphere.parameterization.samples import without_spikes
 from kinesphere.parameterization.settings import FilterSettings
+from kinesphere.parameterization.speed_threshold import paper_threshold, valley_threshold
 
 NOISES = {
     "clean": {},

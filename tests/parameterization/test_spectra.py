@@ -15,6 +15,7 @@ from kinesphere.geometry.rotations import rotation_about, rotation_angle, tangen
 from kinesphere.parameterization.axes import spectra
 from kinesphere.parameterization.axes.free_motion import FreeMotion, likeliest_axes
 from kinesphere.parameterization.axes.spectra import sparsest_axes, spread_of_axes
+from kinesphere.parameterization.axes.stretches import stretches_of
 from kinesphere.parameterization.axes.waves import (
     Stretch,
     both_of,
@@ -45,7 +46,7 @@ def twisting(rng):
 @pytest.fixture
 def stretch(rng, twisting):
     motion = free_motion(twisting).thinned()
-    (stretch,), _ = spectra._stretches(motion, twisting.axes)
+    (stretch,), _ = stretches_of(motion, twisting.axes)
     return motion, stretch
 
 
@@ -103,7 +104,7 @@ def test_axes_turn_with_the_parent(rng, twisting):
 def test_long_rests_count_as_short_ones_and_empty_stretches_do_not(twisting):
     motion = free_motion(twisting).thinned()
     late = motion.times + np.where(np.arange(len(motion.times)) < 100, 0.0, 500.0)
-    stretches, _ = spectra._stretches(
+    stretches, _ = stretches_of(
         FreeMotion(motion.rotations, late, motion.long_axis, motion.reference), twisting.axes
     )
     assert sum(len(part.angles) for part in stretches) == len(motion.times)

@@ -13,7 +13,7 @@ from kinesphere.parameterization.anatomy import MIRROR
 from kinesphere.parameterization.axes.kernels import turned_between
 from kinesphere.parameterization.axes.twist_phases import TwistAxis, find_twist_axis
 from kinesphere.parameterization.confidence import TISSUE
-from kinesphere.parameterization.joint import solve_joint
+from kinesphere.parameterization.joint_angles import solve_joint
 from kinesphere.parameterization.settings import AxesSettings, ParameterizationSettings
 from kinesphere.parameterization.third_axis import _serves, fit_axes
 from kinesphere.parameterization.view import view_joint

@@ -88,11 +88,39 @@ def test_a_foot_without_its_heel_lies_as_with_it(recordings, name, without):
         pitch = np.rad2deg(np.nanmedian(np.arctan2(apart[:, 1, 0], apart[:, 0, 0])))
         assert abs(pitch) < 3.0
         assert np.rad2deg(np.nanmedian(rotation_angle(apart))) < 9.0
-    feet = bare.history[-1].findings["feet_levelled_deg"]
-    assert list(feet) == [f"{'left' if heel[0] == 'L' else 'right'}_foot" for heel in without]
+    findings = bare.history[-1].findings
     assert whole.history[-1].findings["feet_without_heel"] == []
+    if len(without) == 1:  # the other foot has one
+        assert findings["feet_by_the_other"] == {"left_foot": ["RHEE"]}
+        assert findings["feet_without_heel"] == []
+        return
+    assert list(findings["feet_levelled_deg"]) == ["left_foot", "right_foot"]
     (said,) = (warning for warning in bare.history[-1].warnings if "heel" in warning)
     assert "rests flat" in said
+
+
+@pytest.mark.parametrize(
+    ("name", "marker", "off"),
+    [
+        *(
+            (f"functional/{name}.c3d", f"{side}{marker}", 6.5)
+            for name in ("Test_func_lknee", "Test_func_rhip", "anatomical_posture")
+            for side in "LR"
+            for marker in ("TOE", "TOE5", "HEE")
+        ),
+        *((PLUGIN_GAIT[3], f"{side}{marker}", 8.0) for side in "LR" for marker in ("TOE", "HEE")),
+    ],
+)
+def test_a_foot_that_lacks_one_marker_lies_nearly_as_with_it(recordings, name, marker, off):
+    """By its own markers alone it is 6 to 10° off; with its heel alone, turned right round."""
+    whole, less = (normalize(provisional(recordings / name, lost)[1]) for lost in ((), (marker,)))
+    foot = f"{'left' if marker[0] == 'L' else 'right'}_foot"
+    i = whole.skeleton.limb_names.index(foot)
+    apart = np.swapaxes(whole.rotations[:, i], -1, -2) @ less.rotations[:, i]
+    assert np.rad2deg(np.nanmedian(rotation_angle(apart))) < off
+    twin = f"{'R' if marker[0] == 'L' else 'L'}{marker[1:]}"
+    assert less.history[-1].findings["feet_by_the_other"] == {foot: [twin]}
+    assert any(f"{foot} has no marker like {twin}" in said for said in less.history[-1].warnings)
 
 
 @pytest.mark.parametrize("name", PLUGIN_GAIT)

@@ -7,11 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+from kinesphere.data.label_sides import mirror_pairs
 from kinesphere.errors import BadModel
 from kinesphere.labelling import built_in_model
 from kinesphere.skeleton import fit_skeleton, learn_model
 from kinesphere.skeleton.degrees import count_axes
-from kinesphere.skeleton.naming import joint_name, mirror_pairs
+from kinesphere.skeleton.naming import joint_name
 from kinesphere.skeleton.statistics import marker_statistics
 from kinesphere.skeleton.topology import spanning_tree
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from kinesphere.data import Landmark
+from kinesphere.geometry.length_units import STATURE
 from kinesphere.skeleton import discover, fit_skeleton
-from kinesphere.skeleton.discovery.person import STATURE, Person
+from kinesphere.skeleton.discovery.person import Person
 from kinesphere.skeleton.landmarks import STEADY
 from kinesphere.skeleton.other_size import with_lengths
 from kinesphere.skeleton.scale import PERSON, TINY, times_too_large

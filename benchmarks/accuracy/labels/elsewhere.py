@@ -10,6 +10,7 @@ import numpy as np
 from benchmarks.accuracy.labels.sources import cmu, folder, model_of, score_of, shuffled
 from kinesphere import read
 from kinesphere.data import Recording, Segment, TopologicalModel
+from kinesphere.data.label_sides import mirror_pairs
 from kinesphere.errors import KinesphereError
 from kinesphere.io import read_segments
 from kinesphere.labelling import built_in_model, label
@@ -17,7 +18,6 @@ from kinesphere.labelling.matching import Match
 from kinesphere.labelling.pair_statistics import match_pair_statistics
 from kinesphere.labelling.template import template_of
 from kinesphere.skeleton import learn_model
-from kinesphere.skeleton.naming import mirror_pairs
 from kinesphere.skeleton.statistics import marker_statistics
 from kinesphere.synthetic import HAND, QUADRUPED, make_performance
 

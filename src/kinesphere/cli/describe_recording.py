@@ -17,7 +17,15 @@ from kinesphere.labelling import (
     find_subjects,
     match_labels,
 )
-from kinesphere.quality import check_recording, find_gaps, gathered, orient
+from kinesphere.quality import (
+    check_at_size,
+    check_unit,
+    find_gaps,
+    gathered,
+    orient,
+    times_in_words,
+    told_unit,
+)
 
 _WORST = 8
 """Markers listed by how much of them is missing."""
@@ -32,7 +40,8 @@ def describe_recording(recording: Recording, subject: str | None = None) -> dict
     }
     chosen = choose_model(recording, subject)
     read = recording.history[0] if recording.history else None
-    found = check_recording(recording)
+    times = told_unit(tuple(check_unit(recording)))
+    found = check_at_size(recording, times)
     return {
         "kind": "recording",
         "read": {**read.settings, **read.findings} if read else {},
@@ -46,6 +55,7 @@ def describe_recording(recording: Recording, subject: str | None = None) -> dict
         "subjects": list(subjects),
         "models": models,
         "model": chosen.name if chosen else None,
+        "times_too_large": times,
         "up": _up(recording, chosen, subject),
         "gaps": _gaps(recording),
         "outputs": dict(Counter(output.kind for output in recording.outputs)),
@@ -108,7 +118,7 @@ def _pairs(summary: dict[str, Any]) -> list[tuple[str, str]]:
             f"{summary['n_markers']} ({summary['n_unlabelled']} unlabelled), "
             f"{summary['gaps']['missing']:.1%} of all positions missing",
         ),
-        ("unit", str(read.get("unit", "unknown"))),
+        ("unit", _unit(str(read.get("unit", "unknown")), summary["times_too_large"])),
         ("up", up["text"]),
         ("subjects", ", ".join(summary["subjects"]) or "one, without a prefix"),
         ("models", _models(summary)),
@@ -134,6 +144,10 @@ def _models(summary: dict[str, Any]) -> str:
         if chosen
         else "solve goes by motion alone, unless --model names one (see 'kinesphere model')"
     )
+
+
+def _unit(read: str, times: float) -> str:
+    return read if times == 1 else f"{read}, likely wrong: lengths are {times_in_words(times)}"
 
 
 def _up(

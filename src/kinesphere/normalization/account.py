@@ -11,6 +11,10 @@ from kinesphere.normalization.samples import Samples
 
 _WIDE = np.deg2rad(10.0)  # spread of the body frames from which their mean is in doubt
 
+MIRRORED, BY_ONE = 8, 20
+"""deg by which a foot may be off that is the other's mirror image, and by a single marker of it:
+1.1 to 8.4° and 1.3 to 27° where one marker of a real foot was left out."""
+
 _CROOKED = np.deg2rad(45.0)
 """rad, from where a limb points in the ideal default position, from which on that is said."""
 ARM = ("upper_arm", "forearm", "hand")
@@ -43,21 +47,36 @@ def warnings_of(
             f"the default position does not fully show {', '.join(alignment.elsewhere)}; aligned "
             "with the limb before it, in the frames that show both"
         )
-    said += _heels(alignment)
+    said += _feet(alignment)
     if alignment.never:
         said.append(f"{', '.join(alignment.never)} could not be aligned and keeps its frame")
     return tuple(said)
 
 
-def _heels(alignment: Alignment) -> list[str]:
-    """Return what the frames of feet without a heel rest on."""
+def _feet(alignment: Alignment) -> list[str]:
+    """Return what the frames of feet rest on that lack a heel, or markers of the other foot."""
     levelled: list[str] = []
     lines: list[str] = []
-    for name, on in alignment.heelless.items():
-        known = name in alignment.levelled
-        (levelled if known else lines).append(f"{name} ({', '.join(on)})")
+    heels: list[str] = []
+    said: list[str] = []
+    for name, foot in alignment.feet.items():
+        on = f"{name} ({', '.join(foot.on)})"
+        if foot.lender:
+            said.append(
+                f"{name} has no marker like {', '.join(foot.missing)} of {foot.lender}: its long "
+                f"axis is that foot's, mirrored onto {', '.join(foot.on)}, and may be "
+                f"{MIRRORED if len(foot.on) > 1 else BY_ONE} deg off"
+            )
+        elif foot.backward:
+            heels.append(on)
+        elif foot.bare:
+            (lines if foot.pitch is None else levelled).append(on)
+    if heels:
+        said.append(
+            "the long axis of a foot is told by markers at its heel alone; it is level, from them "
+            f"past the ankle, and may be 30 deg off: {', '.join(heels)}"
+        )
     ahead = "the long axis of a foot is told by markers ahead of its ankle alone, none is at the "
-    said = []
     if levelled:
         said.append(
             f"{ahead}heel; its pitch is from where it rests flat on the floor, and the ankle's "
@@ -101,7 +120,14 @@ def findings_of(
         "spread_max_deg": float(spread.max()),
         "facing": verdict.as_json(),
         "limbs_without_twist": list(alignment.twistless),
-        "feet_without_heel": list(alignment.heelless),
-        "feet_levelled_deg": {n: float(np.rad2deg(a)) for n, a in alignment.levelled.items()},
+        "feet_without_heel": [name for name, foot in alignment.feet.items() if foot.bare],
+        "feet_levelled_deg": {
+            name: float(np.rad2deg(foot.pitch))
+            for name, foot in alignment.feet.items()
+            if foot.pitch is not None
+        },
+        "feet_by_the_other": {
+            name: list(foot.missing) for name, foot in alignment.feet.items() if foot.lender
+        },
         "limbs_off_ideal_deg": {n: float(np.rad2deg(a)) for n, a in alignment.off_ideal.items()},
     }

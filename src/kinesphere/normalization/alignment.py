@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from kinesphere.data import Array, Codes, Mask, PoseFlag
-from kinesphere.normalization.anatomy import Anatomy
+from kinesphere.normalization.anatomy import CANONICAL, Anatomy, without_side
 from kinesphere.normalization.averaging import robust_mean_rotations
+from kinesphere.normalization.feet import Foot, feet_of
 from kinesphere.normalization.limb_frames import canonical_direction, minimal_frame, paper_frame
-from kinesphere.normalization.limb_lines import lacks_heel
 from kinesphere.normalization.samples import Samples
-from kinesphere.normalization.soles import levelling, turned_by
+from kinesphere.normalization.soles import stands
 from kinesphere.normalization.vectors import angle_between
 
 _NEAR = np.deg2rad(5.0)  # postures this much farther from the ideal than the best still count
@@ -36,10 +36,8 @@ class Alignment:
     in the frames that do."""
     twistless: list[str] = field(default_factory=list)
     """Limbs whose twist no frame tells."""
-    heelless: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    """Feet without a marker behind the ankle → the markers that tell their line."""
-    levelled: dict[str, float] = field(default_factory=dict)
-    """Those that rest flat somewhere → rad of pitch that was taken out of their line."""
+    feet: dict[str, Foot] = field(default_factory=dict)
+    """What tells where each foot points."""
     never: list[str] = field(default_factory=list)
     """Limbs that could not be aligned; they keep their frame."""
 
@@ -72,8 +70,7 @@ def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Ali
     sure = twist_told(samples.motion.flags)
     told = sure[samples.frames[chosen]][..., None, None]
     means = _mean_poses(bodies[:, None], np.where(told, limbs, np.nan))
-    bare: dict[int, Array] = {}
-    heeled: list[int] = []
+    feet: dict[int, Array] = {}
     for limb, name in enumerate(anatomy.skeleton.limb_names):
         base_from_limb = _known(means[limb])
         if base_from_limb is None and limb > 0:
@@ -87,23 +84,24 @@ def align_limbs(samples: Samples, bodies: Array, chosen: Mask, rule: str) -> Ali
         if base_from_limb is None:
             found.never.append(name)
             continue
-        base_from_new, found.along[limb], off = _frame(anatomy, limb, base_from_limb, rule)
+        points = base_from_limb @ anatomy.directions[limb]
+        base_from_new, found.along[limb], off = _frame(anatomy, limb, points, rule)
         found.turns[limb] = base_from_limb.T @ base_from_new
         found.shifts[limb] = np.nan_to_num(anatomy.mid_point(limb))
         found.off_ideal[name] = off
-        if _is_foot(anatomy, limb, base_from_limb):
-            foot, begin = anatomy.skeleton.limbs[limb], anatomy.proximal_ends[limb]
-            if lacks_heel(foot, begin, anatomy.directions[limb]):
-                seen = np.isfinite(foot.marker_positions).all(axis=1)
-                found.heelless[name] = tuple(np.array(foot.markers)[seen].tolist())
-                bare[limb] = base_from_limb
-            elif len(foot.markers):
-                heeled.append(limb)
-    for limb, pitch in levelling(samples, list(bare), heeled).items():
-        base_from_limb, name = bare[limb], anatomy.skeleton.limb_names[limb]
-        base_from_new, found.along[limb], off = _frame(anatomy, limb, base_from_limb, rule, pitch)
-        found.turns[limb] = base_from_limb.T @ base_from_new
-        found.off_ideal[name], found.levelled[name] = off, pitch
+        if _is_foot(samples, limb, base_from_limb):
+            feet[limb] = base_from_limb
+    for limb, foot in feet_of(samples, feet).items():
+        name = anatomy.skeleton.limb_names[limb]
+        base_from_new, found.along[limb], off = _frame(anatomy, limb, foot.points, rule)
+        found.turns[limb] = feet[limb].T @ base_from_new
+        found.off_ideal[name], found.feet[name] = off, foot
+        if foot.lender or foot.backward:
+            half = foot.length / 2 * feet[limb].T @ foot.points
+            found.lengths[limb], found.shifts[limb] = (
+                foot.length,
+                anatomy.proximal_ends[limb] + half,
+            )
     return found
 
 
@@ -118,20 +116,14 @@ def twist_told(flags: Codes) -> Mask:
     return np.asarray(~(guessed | unseen | (filled & guessed.any(axis=0))))
 
 
-def _frame(
-    anatomy: Anatomy, limb: int, base_from_limb: Array, rule: str, pitch: float = 0.0
-) -> tuple[Array, Array, float]:
+def _frame(anatomy: Anatomy, limb: int, points: Array, rule: str) -> tuple[Array, Array, float]:
     """Return a limb's new frame and long axis, and how far it points from the ideal, rad.
 
-    ``pitch``: rad, to be taken out of the line of a foot.
+    ``points``: (3,) along its line, in the body frame.
     """
-    line = anatomy.directions[limb]
-    if not np.isfinite(line).all():  # pelvis and trunk, or a root, or a limb with no extent at all
+    if not np.isfinite(points).all():  # pelvis and trunk, or a root, or a limb with no extent
         return np.eye(3), np.array([0.0, 1.0, 0.0]), 0.0
     name, at_end = anatomy.skeleton.limb_names[limb], not anatomy.distal_joints[limb]
-    points = base_from_limb @ line
-    if pitch:
-        points = turned_by(points, pitch)
     ideal = canonical_direction(name, points, at_end=at_end)
     off = float(angle_between(ideal, points))
     if rule == "paper":
@@ -139,13 +131,18 @@ def _frame(
     return minimal_frame(points, ideal), ideal, off
 
 
-def _is_foot(anatomy: Anatomy, limb: int, base_from_limb: Array) -> bool:
-    """Return whether a limb ends a chain and ideally points forward, whatever its name."""
+def _is_foot(samples: Samples, limb: int, base_from_limb: Array) -> bool:
+    """Return whether a limb ends a chain as a foot: by its name, or as the body stands on it.
+
+    Of a nameless limb that ideally points forward; an arm or a tail may do that, too.
+    """
+    anatomy = samples.anatomy
     line, at_end = anatomy.directions[limb], not anatomy.distal_joints[limb]
     if not at_end or not np.isfinite(line).all():
         return False
     name = anatomy.skeleton.limb_names[limb]
-    return bool(canonical_direction(name, base_from_limb @ line, at_end=at_end)[0] == 1.0)
+    ahead = canonical_direction(name, base_from_limb @ line, at_end=at_end)[0] == 1.0
+    return bool(ahead and (without_side(name) in CANONICAL or stands(samples, limb)))
 
 
 def _mean_poses(bases: Array, rotations: Array) -> Array:

@@ -21,6 +21,7 @@ _SCATTER = np.deg2rad(5.0)
 _STEEPER = np.deg2rad(15.0)
 """rad from which on a line runs down too steeply to be a sole's: with a heel it lies at 0 to 9° on
 a flat foot, and so markers about the middle of a foot may lie that are all it has, to 13°."""
+_LEVEL = 0.05  # spans of the body above its lowest end within which an end stands where that does
 _HANGS = 0.5  # least share of down in a shank whose foot stands: knees on the floor lay it level
 
 
@@ -66,6 +67,27 @@ def find_rest(samples: Samples, limb: int) -> Rest:
         return Rest(np.nan, np.nan, 0)
     middle = float(np.median(rests))
     return Rest(middle, float(np.abs(rests - middle).mean()), len(rests))
+
+
+def stands(samples: Samples, limb: int) -> bool:
+    """Return whether the end of a chain is one that its body stands on, whatever it is called.
+
+    It comes to rest, low and under a limb that hangs, as low as any other end of the body. Of a
+    single chain nothing tells: an arm or a tail hangs lowest of itself.
+
+    Parameters
+    ----------
+    samples
+    limb
+        The index of the last limb of a chain.
+    """
+    anatomy = samples.anatomy
+    carried = [len(joints) for joints in anatomy.distal_joints]
+    if max(carried) < 2 or find_rest(samples, limb).n_frames == 0:
+        return False
+    ends = [i for i, n in enumerate(carried) if n == 0]
+    levels = [_level(samples, i) for i in ends]
+    return bool(_level(samples, limb) <= np.nanmin(levels) + _LEVEL * anatomy.span)
 
 
 def levelling(samples: Samples, bare: Sequence[int], heeled: Sequence[int]) -> dict[int, float]:
@@ -137,6 +159,14 @@ def _toes(samples: Samples, limb: int) -> tuple[Array, Array]:
         speed = np.maximum(speed, np.where(seconds > 0, moved, 0.0))
     toes = _carried(samples, limb, anatomy.distal_ends[limb], samples.frames)
     return toes, speed
+
+
+def _level(samples: Samples, limb: int) -> float:
+    """Return how low a limb's far end is at its lowest, m; NaN if it is never seen."""
+    anatomy = samples.anatomy
+    heights = _carried(samples, limb, anatomy.distal_ends[limb], samples.frames) @ UP
+    heights = heights[np.isfinite(heights)]
+    return float(np.quantile(heights, _LOWEST)) if len(heights) else np.nan
 
 
 def _carried(samples: Samples, limb: int, point: Array, frames: NDArray[np.intp]) -> Array:

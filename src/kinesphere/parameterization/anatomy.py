@@ -150,9 +150,9 @@ def named_axes(axes: Array, name: str) -> tuple[Array, list[int]]:
     if body is None:
         return axes, list(range(len(axes)))
     cosines = axes @ body[: len(axes)].T
-    matches = sorted(_matches(cosines))
-    signed = [axes[i] if cosines[i, j] >= 0 else -axes[i] for j, i in matches]
-    return np.array(signed).reshape(-1, 3), [i for _, i in matches]
+    pairs = sorted(matches(cosines))
+    signed = [axes[i] if cosines[i, j] >= 0 else -axes[i] for j, i in pairs]
+    return np.array(signed).reshape(-1, 3), [i for _, i in pairs]
 
 
 def nominal_axes(name: str, axes: Array) -> Array | None:
@@ -161,7 +161,7 @@ def nominal_axes(name: str, axes: Array) -> Array | None:
     if body is None:
         return None
     return body[
-        [j for j, _ in sorted(_matches(axes @ body[: len(axes)].T), key=lambda pair: pair[1])]
+        [j for j, _ in sorted(matches(axes @ body[: len(axes)].T), key=lambda pair: pair[1])]
     ]
 
 
@@ -190,8 +190,8 @@ def substitute_axes(name: str, n_axes: int, direction: Array) -> Array:
     return body[:n_axes]
 
 
-def _matches(cosines: Array) -> list[tuple[int, int]]:
-    """Return (column, row) pairs, closest first, each row and column once."""
+def matches(cosines: Array) -> list[tuple[int, int]]:
+    """Return (column, row) pairs of (n, m) cosines, closest first, each row, column once."""
     free = np.abs(cosines)
     pairs: list[tuple[int, int]] = []
     for _ in range(min(free.shape)):

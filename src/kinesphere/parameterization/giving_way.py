@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.parameterization.joined import doubted
-from kinesphere.parameterization.joint import OUT_OF_REACH, solve_joint
+from kinesphere.parameterization.joint import OUT_OF_REACH
+from kinesphere.parameterization.joint_angles import solve_joint
 from kinesphere.parameterization.joint_fit import JointFit
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.third_axis import fit_axes

@@ -7,9 +7,9 @@ import numpy as np
 
 from kinesphere.data import Array, Json
 from kinesphere.parameterization.anatomy import nominal_axes, wanted_n_axes
+from kinesphere.parameterization.axis_figures import PER_AXIS
 from kinesphere.parameterization.joint_fit import JointFit, angles_between, or_null
 
-PER_AXIS = ("ranges_deg", "conditioning", "halves_disagreement_deg")
 OF_THE_PAIR = ("explained", "other_reading_deg", "held_out_deg", "held_out_body_deg")
 """Findings that say nothing about two axes of different recordings."""
 SOMEWHERE = "another recording"

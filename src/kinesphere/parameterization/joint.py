@@ -11,18 +11,18 @@ from kinesphere.parameterization.anatomy import (
     joint_kind,
     substitute_axes,
 )
-from kinesphere.parameterization.angles import JointAngles, solve_angles
-from kinesphere.parameterization.arcs import PERCENTILES
 from kinesphere.parameterization.axes.fit import moving_positions
+from kinesphere.parameterization.axis_figures import (
+    free_findings,
+    nearest_places,
+    quality_findings,
+    with_places,
+)
 from kinesphere.parameterization.confidence import AxesQuality, observed_n_axes
 from kinesphere.parameterization.doubts import uncertain_in_free_motion
 from kinesphere.parameterization.free_hinge import FreeHinge, hinge_worth_having
-from kinesphere.parameterization.joint_fit import (
-    JointFit,
-    angles_between,
-    or_null,
-    quality_findings,
-)
+from kinesphere.parameterization.joint_angles import larger_excursion_positive
+from kinesphere.parameterization.joint_fit import JointFit, angles_between, or_null
 from kinesphere.parameterization.judged_axes import MovementAxes
 from kinesphere.parameterization.movement_axes import movement_axes
 from kinesphere.parameterization.one_of_two import completed
@@ -97,17 +97,20 @@ def fit_joint(
         if not doubts:
             loose = found.remark
     served = free is not None or one is not None
+    places = list(range(n_axes))  # of the axes that figures are told of, among those that serve
     if not served and (len(axes) < n_axes or (doubts and not keep)):
         source = "body"
         axes = substitute_axes(view.name, n_axes, view.gravity)[::-1]
         rest = body_rest(view, axes)
         uncertainty = np.full(n_axes, np.nan)
+        places = nearest_places(found.axes, axes)
     added = ""
     if n_axes == 1 and asked_n_axes(view.name, options) is None:
         spread = np.rad2deg(cone_spread(view.samples.positions, axes[0]))
         if spread > options.largest_spread and (side := body_axes(view.name)) is not None:
             across = second_axis(axes[0], rest @ view.long_axis, side[1])
             axes, uncertainty = np.array([across, axes[0]]), np.array([np.nan, uncertainty[0]])
+            places = [place + 1 for place in places]
             added = f"{spread:.0f}°"
             assumed = (True, False) if source == "movement" else ()
     if joint_kind(view.name) is None:
@@ -123,7 +126,9 @@ def fit_joint(
         "reliable_s": float(view.calibration.sum() / view.samples.rate),
         "axes_uncertainty_deg": or_null(np.rad2deg(uncertainty)),
         "axes_apart_deg": angles_between(axes),
-        **(quality_findings(quality) if free is None else _free_findings(free)),
+        **with_places(
+            quality_findings(quality) if free is None else free_findings(free), places, len(axes)
+        ),
     }
     if source == "movement" and n_axes == 1 and (reading := _reading(quality, free)) > 0:
         findings["other_reading_deg"] = float(np.rad2deg(reading))
@@ -170,27 +175,6 @@ def asked_n_axes(name: str, options: AxesSettings) -> int | None:
     return counts.get(name, counts.get(joint_kind(name) or name))
 
 
-def solve_joint(
-    view: JointView, axes: Array, rest: Array, settings: ParameterizationSettings
-) -> JointAngles:
-    """Return angles and twist of every frame, never smoothed."""
-    options = settings.angles
-    if len(axes) == 2 and declared_n_axes(view.name, parse_counts(settings.axes.counts)) == 1:
-        # a second axis was added to a hinge: it takes what the hinge leaves, never a half turn,
-        # and forearms twist too far for the least twist to tell the branches apart
-        options = replace(options, branch="default-sign")
-    return solve_angles(
-        view.rotations,
-        axes,
-        rest,
-        view.long_axis,
-        view.twist_known,
-        options,
-        settings.twist,
-        view.samples.rate,
-    )
-
-
 def _reading(quality: AxesQuality | None, free: FreeHinge | None) -> float:
     """Return how far the axis that serves is off if its limb twists with the angle, rad."""
     if free is not None:
@@ -198,30 +182,7 @@ def _reading(quality: AxesQuality | None, free: FreeHinge | None) -> float:
     return 0.0 if quality is None else float(quality.readings[0])
 
 
-def _free_findings(free: FreeHinge) -> dict[str, Json]:
-    """Return the figures of an axis from all movement; null for what only main movements have."""
-    return {
-        "ranges_deg": [float(np.rad2deg(free.moved))],
-        "conditioning": [None],
-        "halves_disagreement_deg": [None],
-        "alike_deg": [float(np.rad2deg(np.hypot(free.reading, free.coupled)))],
-    }
-
-
 def _height(view: JointView, axis: Array) -> Array:
     """Return the cosine of the cone on which a hinge moves, (1,)."""
     moving = moving_positions(view.samples)
     return np.array([float(np.median(moving @ axis))])
-
-
-def larger_excursion_positive(
-    view: JointView, axes: Array, rest: Array, settings: ParameterizationSettings
-) -> Array:
-    """Return axes turned so that the limb goes farther to the positive side of each."""
-    angles = solve_joint(view, axes, rest, settings).angles[:, : len(axes)]
-    signs = np.ones(len(axes))
-    for k, column in enumerate(angles.T):
-        known = column[np.isfinite(column)]
-        if len(known) and np.percentile(known, PERCENTILES).sum() < 0:
-            signs[k] = -1.0
-    return axes * signs[:, None]

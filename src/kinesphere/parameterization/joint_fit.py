@@ -8,7 +8,6 @@ import numpy as np
 
 from kinesphere.data import Array, AxesSource, Json
 from kinesphere.data.skeleton import sources_of_axes
-from kinesphere.parameterization.confidence import AxesQuality
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,19 +69,6 @@ def said_of(fit: JointFit) -> str:
 def angles_between(axes: Array) -> list[Json]:
     """Return the angles in deg between the lines of each axis and the next, (n_axes, 3)."""
     return [float(np.rad2deg(np.arccos(np.clip(abs(a @ b), 0, 1)))) for a, b in pairwise(axes)]
-
-
-def quality_findings(quality: AxesQuality | None) -> dict[str, Json]:
-    """Return the figures of what speaks for and against axes; null for one that nothing tells."""
-    if quality is None:
-        return {}
-    return {
-        "ranges_deg": or_null(np.rad2deg(quality.ranges)),
-        "conditioning": or_null(quality.conditioning),
-        "explained": quality.explained,
-        "halves_disagreement_deg": or_null(np.rad2deg(quality.halves)),
-        "alike_deg": or_null(np.rad2deg(quality.alike)),
-    }
 
 
 def or_null(values: Array) -> list[Json]:

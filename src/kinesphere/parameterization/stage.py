@@ -20,7 +20,7 @@ from kinesphere.parameterization.anatomy import human_plan
 from kinesphere.parameterization.angles import unwrapped
 from kinesphere.parameterization.calibration_windows import windows_beyond, windows_of
 from kinesphere.parameterization.coupling import neighbours_of
-from kinesphere.parameterization.joint import solve_joint
+from kinesphere.parameterization.joint_angles import solve_joint
 from kinesphere.parameterization.joint_fit import JointFit
 from kinesphere.parameterization.joint_flags import flags_of
 from kinesphere.parameterization.measures import (

@@ -13,13 +13,10 @@ from kinesphere.parameterization.angles import solve_angles
 from kinesphere.parameterization.axes.fit import thinned
 from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.axes.twist_phases import TwistAxis, find_twist_axis
+from kinesphere.parameterization.axis_figures import PER_AXIS, listed_in
 from kinesphere.parameterization.confidence import observed_n_axes
-from kinesphere.parameterization.joint import (
-    OUT_OF_REACH,
-    asked_n_axes,
-    fit_joint,
-    larger_excursion_positive,
-)
+from kinesphere.parameterization.joint import OUT_OF_REACH, asked_n_axes, fit_joint
+from kinesphere.parameterization.joint_angles import larger_excursion_positive
 from kinesphere.parameterization.joint_fit import JointFit, angles_between, or_null
 from kinesphere.parameterization.samples import Phase
 from kinesphere.parameterization.second_axis import second_axis
@@ -28,7 +25,6 @@ from kinesphere.parameterization.view import JointView, view_joint
 
 LARGELY = 0.25  # of the frames: so often near a singular pose, three angles tell less than two
 TOLD = 0.9  # of the frames must tell the twist
-PER_AXIS = ("ranges_deg", "conditioning", "halves_disagreement_deg", "alike_deg")
 
 
 def fit_axes(view: JointView, settings: ParameterizationSettings) -> JointFit:
@@ -155,7 +151,7 @@ def _joined(
     own = (float(np.rad2deg(twist.range)), twist.conditioning, halves, 0.0)
     observed = fit.findings["n_axes_by_data"]
     spans: list[Json] = [list(t) for t in view.samples.with_phases(twist.phases).phase_times]
-    swung = _listed(fit.findings.get("phases_s"))
+    swung = listed_in(fit.findings, "phases_s")
     findings: Mapping[str, Json] = {
         **fit.findings,
         "n_axes": 3,
@@ -168,15 +164,11 @@ def _joined(
             np.rad2deg(np.arccos(min(1.0, float(twist.axis @ view.long_axis))))
         ),
         **{
-            name: [value, *[None] * between, *_listed(fit.findings.get(name))]
+            name: [value, *[None] * between, *listed_in(fit.findings, name)]
             for name, value in zip(PER_AXIS, own, strict=True)
         },
     }
     return replace(fit, axes=axes, uncertainty=uncertainty, findings=findings, assumed=assumed)
-
-
-def _listed(value: Json) -> list[Json]:
-    return value if isinstance(value, list) else []
 
 
 def _start(span: Json) -> float:

@@ -9,13 +9,11 @@ from kinesphere import __version__
 from kinesphere.data import Json, Motion, Recording, Skeleton, Step
 from kinesphere.errors import BadRecording, KinesphereError
 from kinesphere.pipeline.best_axes import Calibrated
-from kinesphere.quality import Finding, check_at_zero, check_recording, gathered
+from kinesphere.quality import Finding, check_at_size, check_at_zero, gathered
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 
 IMPOSSIBLE = (0.1, 10.0)
 """m from feet to head: beyond, the unit is wrong and nothing else can be right."""
-OF_THE_FILE = ("unit", "far")
-"""Rules about the lengths as they were read, even where these are known to be wrong."""
 OTHER_PERSON = 0.05
 """Share by which limb lengths of one person differ between solutions, at most: 0.033 over nine
 trials of one person, 0.049 between a still and a moving one; 0.032 and more between people."""
@@ -39,7 +37,7 @@ def with_checks(recording: Recording, unit: float | None = None) -> Recording:
     BadRecording
         If the body has a size no body has, or a marker a place no marker has.
     """
-    found = [f for f in _found(recording, unit) if f.severity != "note"]
+    found = [f for f in check_at_size(recording, unit or 1.0) if f.severity != "note"]
     low, high = IMPOSSIBLE
     for finding in found:
         height = dict(finding.numbers).get("height_m", low)
@@ -54,17 +52,6 @@ def with_checks(recording: Recording, unit: float | None = None) -> Recording:
         version=__version__,
     )
     return replace(recording, history=(*recording.history, step))
-
-
-def _found(recording: Recording, unit: float | None) -> tuple[Finding, ...]:
-    found = check_recording(recording)
-    if unit is None or unit == 1:
-        return found
-    sized = check_recording(replace(recording, markers=recording.markers / unit))
-    return (
-        *(f for f in found if f.rule in OF_THE_FILE),
-        *(f for f in sized if f.rule not in OF_THE_FILE),
-    )
 
 
 def why_it_fails(recording: Recording, failed: KinesphereError) -> KinesphereError:

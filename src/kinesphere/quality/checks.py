@@ -2,22 +2,9 @@
 
 from collections.abc import Callable, Iterable, Iterator
 
-import numpy as np
-
 from kinesphere.data import Recording
-from kinesphere.geometry.vectors import lengths
 from kinesphere.quality.at_zero import check_at_zero, without_zeros
-from kinesphere.quality.body import (
-    ENOUGH_FRAMES,
-    HEAD,
-    HEELS,
-    SHOULDERS,
-    TOES,
-    Body,
-    find_bodies,
-    labelled_columns,
-    thinned,
-)
+from kinesphere.quality.body import labelled_columns
 from kinesphere.quality.findings import Finding
 from kinesphere.quality.marker_checks import (
     check_coincident,
@@ -28,11 +15,10 @@ from kinesphere.quality.marker_checks import (
     check_never_seen,
 )
 from kinesphere.quality.swaps import check_swaps
+from kinesphere.quality.unit import check_unit, sized
 
-BODY_HEIGHT = (0.3, 2.5)
-"""m between feet and head (or shoulders), from a crouching child to a giant on tiptoe."""
-SCENE = (0.01, 50.0)
-"""m across all markers of a frame, from a finger to a hall."""
+OF_THE_FILE = ("unit", "far")
+"""Rules about the lengths as they were read, even where these are known to be wrong."""
 
 
 def check_recording(recording: Recording) -> tuple[Finding, ...]:
@@ -59,7 +45,7 @@ def check_recording(recording: Recording) -> tuple[Finding, ...]:
     apart = without_zeros(recording)  # what a zero looks like besides is not told again
     rules: Iterable[tuple[Callable[[Recording], Iterator[Finding]], Recording]] = (
         (_one_frame, recording),
-        (_unit, recording),
+        (check_unit, recording),
         (check_far, recording),
         (check_never_seen, recording),
         (check_at_zero, recording),
@@ -75,6 +61,22 @@ def check_recording(recording: Recording) -> tuple[Finding, ...]:
     return tuple(sorted(found, key=lambda finding: order.index(finding.severity)))
 
 
+def check_at_size(recording: Recording, times: float) -> tuple[Finding, ...]:
+    """Return `check_recording` of lengths that are known to be ``times`` too large.
+
+    Jumps, copies and exchanges are judged, and told, at the subject's true size; what is told of
+    the unit itself and of places is as it was read.
+    """
+    found = check_recording(recording)
+    if times == 1:
+        return found
+    true = check_recording(sized(recording, times))
+    return (
+        *(f for f in found if f.rule in OF_THE_FILE),
+        *(f for f in true if f.rule not in OF_THE_FILE),
+    )
+
+
 def _one_frame(recording: Recording) -> Iterator[Finding]:
     if recording.n_frames == 1:
         yield Finding(
@@ -84,47 +86,6 @@ def _one_frame(recording: Recording) -> Iterator[Finding]:
             "a skeleton can only be measured from a recording with motion",
             frame=recording.first_frame,
         )
-
-
-def _unit(recording: Recording) -> Iterator[Finding]:
-    recording = thinned(recording, ENOUGH_FRAMES)
-    heights = [h for body in find_bodies(recording) if np.isfinite(h := _height(body))]
-    low, high = BODY_HEIGHT
-    for height in heights:
-        if not low <= height <= high:
-            yield Finding(
-                "unit",
-                "warning",
-                f"feet and head are {height:.3g} m apart, a person's are {low} to {high} m",
-                "check the length unit of the file",
-                numbers=(("height_m", round(height, 6)),),
-            )
-    if heights:
-        return
-    # marker by marker in memory: extremes of rows come in a tenth of the time
-    points = np.moveaxis(recording.markers[recording.seen.any(axis=1)], 1, 0).copy()
-    extent = np.fmax.reduce(points) - np.fmin.reduce(points)
-    across = float(np.linalg.norm(np.median(extent, axis=0)))
-    low, high = SCENE
-    if recording.n_markers > 1 and not low <= across <= high:
-        yield Finding(
-            "unit",
-            "warning",
-            f"the markers of a frame are {across:.3g} m across, {low} to {high} m is likely",
-            "check the length unit of the file",
-            numbers=(("across_m", round(across, 6)),),
-        )
-
-
-def _height(body: Body) -> float:
-    """Return the median distance between feet and head, in m; NaN where either is missing."""
-    head, shoulders, feet = body.middle(*HEAD), body.middle(*SHOULDERS), body.middle(*TOES, *HEELS)
-    upper = shoulders if head is None else head
-    if upper is None or feet is None:
-        return float("nan")
-    found = lengths(upper - feet)
-    found = found[np.isfinite(found)]
-    return float(np.median(found)) if len(found) else np.nan
 
 
 def _empty_frames(recording: Recording) -> Iterator[Finding]:

@@ -1,13 +1,9 @@
 """A labelled recording in, a measured skeleton and its motion out."""
 
-from collections.abc import Container, Iterable, Mapping, Sequence
-
 import numpy as np
 
 import kinesphere
 from kinesphere.data import (
-    Array,
-    Joint,
     Json,
     Motion,
     Recording,
@@ -18,12 +14,10 @@ from kinesphere.data import (
     settings_as_json,
 )
 from kinesphere.errors import BadRecording
-from kinesphere.geometry.in_words import in_millimetres
 from kinesphere.skeleton.adoption import adopt, find_adoptions
 from kinesphere.skeleton.chain import measure_chain
+from kinesphere.skeleton.doubts import open_centres, poor_fits
 from kinesphere.skeleton.far_centres import far_centres
-from kinesphere.skeleton.landmarks import BETWEEN, STEADY
-from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.other_size import larger, with_lengths
 from kinesphere.skeleton.report import describe_joint, describe_limb
 from kinesphere.skeleton.sampling import spread_over_joints
@@ -33,9 +27,6 @@ from kinesphere.skeleton.solve import solve_poses
 from kinesphere.skeleton.tree import find_tree
 
 DEFAULT = SkeletonSettings()
-POOR = 0.03
-"""m, rms residual from which on markers are no body: soft tissue leaves 22 mm at most."""
-
 TOO_LARGE = (
     "nobody is so large: the unit of length is likely wrong; joints are judged as if it were "
     "{:g} times smaller, and so are the millimetres said of them"
@@ -44,11 +35,6 @@ TOO_SMALL = (
     "no body is so small: the unit of length is likely wrong; joints are judged as if it were "
     "{:g} times larger, and so are the millimetres said of them"
 )
-ELSEWHERE = {
-    BETWEEN: "put midway between the markers of both limbs",
-    STEADY: "put amid the markers that are steady in both limbs",
-}
-"""Where a centre is that no landmark of a model tells, by its source."""
 
 
 def fit_skeleton(
@@ -147,8 +133,8 @@ def fit_skeleton(
         },
         warnings=(
             *tree.warnings,
-            *_poor_fits(tree.limbs, solved.residuals, share),
-            *_open_centres(described.values(), joints, far.limbs),
+            *poor_fits(tree.limbs, solved.residuals, share),
+            *open_centres(described.values(), joints, far.limbs),
             *far.warnings,
         ),
         version=kinesphere.__version__,
@@ -170,53 +156,3 @@ def fit_skeleton(
 def _number(value: float) -> Json:
     """Return a number as JSON holds it, to three decimals; null for NaN."""
     return round(float(value), 3) if np.isfinite(value) else None
-
-
-def _poor_fits(limbs: Sequence[str], residuals: Array, share: float) -> tuple[str, ...]:
-    """Return the warning that names the limbs whose markers do not move as one body."""
-    poor = []
-    for limb, column in zip(limbs, residuals.T, strict=True):
-        known = column[np.isfinite(column)]
-        if len(known) and (rms := float(np.sqrt(np.mean(known**2)))) > POOR * share:
-            poor.append(f"{limb} ({in_millimetres(rms)})")
-    if not poor:
-        return ()
-    return (
-        f"markers do not move as one body on {', '.join(poor)}: "
-        "they may be mislabelled, swapped, or on another limb",
-    )
-
-
-def _open_centres(
-    joints: Iterable[Joint], measured: Mapping[str, MeasuredJoint], far: Container[str]
-) -> tuple[str, ...]:
-    """Return the warnings that name the joints whose centres the motion does not tell.
-
-    Parameters
-    ----------
-    measured
-        Child limb → its joint and where that was expected, as `expected_centre` says it.
-    far
-        Child limbs of joints that have a warning of their own.
-    """
-    places: dict[str, list[str]] = {}
-    drawn: list[str] = []
-    for joint in joints:
-        if joint.observability != "undetermined" or joint.child in far:
-            continue
-        one = measured[joint.child]
-        if one.drawn_away:
-            drawn.append(f"{joint.name} ({in_millimetres(one.off)})")
-        else:
-            place = ELSEWHERE.get(one.source, "where the model's landmarks expect it")
-            places.setdefault(place, []).append(joint.name)
-    told = [
-        f"the motion does not tell the centre of {', '.join(names)}; it is {place}"
-        for place, names in places.items()
-    ]
-    if drawn:
-        told.append(
-            "the motion hardly tells these centres, yet draws them away from where they are "
-            f"expected: {', '.join(drawn)}"
-        )
-    return tuple(told)

@@ -7,9 +7,10 @@ from itertools import combinations
 import numpy as np
 
 from kinesphere.data import Array, JointModel, Recording, Segment, TopologicalModel
+from kinesphere.data.label_sides import mirror_pairs
 from kinesphere.errors import BadModel
 from kinesphere.skeleton.degrees import count_axes
-from kinesphere.skeleton.naming import joint_name, mirror_pairs
+from kinesphere.skeleton.naming import joint_name
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.statistics import marker_statistics
 from kinesphere.skeleton.topology import joint_cost, limb_poses, spanning_tree

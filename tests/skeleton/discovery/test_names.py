@@ -6,12 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from kinesphere.geometry.length_units import STATURE
 from kinesphere.skeleton import discover
 from kinesphere.skeleton.discovery.figure import Figure
 from kinesphere.skeleton.discovery.forest import Edge, Forest
 from kinesphere.skeleton.discovery.likeliest import SHARPNESS
 from kinesphere.skeleton.discovery.names import Names, _torso
-from kinesphere.skeleton.discovery.person import LIKELY, STATURE, Person
+from kinesphere.skeleton.discovery.person import LIKELY, Person
 from kinesphere.skeleton.discovery.trust import shaken
 from kinesphere.synthetic import HAND, make_performance, spoil_with_noise
 

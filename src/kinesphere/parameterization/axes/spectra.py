@@ -6,8 +6,8 @@ import numpy as np
 
 from kinesphere.data import Array
 from kinesphere.geometry.rotations import tangent_basis
-from kinesphere.parameterization.axes.free_motion import FLATTEST, FLOOR, AxesFit, FreeMotion
-from kinesphere.parameterization.axes.joint_kernels import angles_and_loads
+from kinesphere.parameterization.axes.free_motion import FLOOR, AxesFit, FreeMotion
+from kinesphere.parameterization.axes.stretches import stretches_of
 from kinesphere.parameterization.axes.waves import (
     Stretch,
     both_of,
@@ -16,11 +16,6 @@ from kinesphere.parameterization.axes.waves import (
     products_of,
 )
 
-STRETCH = 20.0  # s that have waves of their own; longer ones cost more than they tell
-LONGEST_REST = 2.0  # s; nobody keeps time over more, so longer ones count as that
-FASTEST = 2.0  # Hz; what is faster counts as error
-PER_WAVE = 2.5  # frames at least
-FINENESS = 1.5  # waves per resolvable frequency: a rhythm may lie between two
 SMOOTH = 0.1  # Hz, over which the usual size of waves changes
 FREEDOM = 2.0  # of the waves about their usual size: rhythms stand out of a spectrum
 FIRST_ERROR = 0.026  # rad, 1.5°
@@ -108,35 +103,10 @@ def spread_of_axes(motion: FreeMotion, axes: Array) -> Array:
 
 def _begun(motion: FreeMotion, axes: Array) -> tuple[list[Stretch], Array, _Belief]:
     """Return stretches, how near frequencies are to each other, (n_waves, n_waves), and a start."""
-    stretches, frequencies = _stretches(motion, axes)
+    stretches, frequencies = stretches_of(motion, axes)
     near = np.exp(-0.5 * ((frequencies[:, None] - frequencies) / SMOOTH) ** 2)
     near /= near.sum(axis=1, keepdims=True)
     return stretches, near, _Belief(axes, FIRST_ERROR, stretches[0].sizes.copy())
-
-
-def _stretches(motion: FreeMotion, axes: Array) -> tuple[list[Stretch], Array]:
-    """Cut the motion; return its stretches and the frequencies, (n_waves,) Hz, of all of them."""
-    gaps = np.minimum(np.diff(motion.times), LONGEST_REST)
-    times = np.concatenate([[0.0], np.cumsum(gaps)])
-    gap = float(np.median(gaps))
-    whole = float(times[-1]) + gap
-    count = max(1, round(whole / STRETCH))
-    length = whole / count
-    fastest = min(FASTEST, 1 / (PER_WAVE * gap))
-    frequencies = np.arange(1, int(fastest * length * FINENESS) + 1) / (length * FINENESS)
-    angles, *_ = angles_and_loads(
-        motion.rotations, axes[0], axes[1], motion.reference, motion.long_axis, FLATTEST
-    )
-    spread = np.clip(angles.var(axis=0), FLOOR**2, 1.0)
-    sizes = np.repeat(spread[:, None] / len(frequencies), len(frequencies), axis=1)
-    inside = np.minimum((times / length).astype(int), count - 1)
-    stretches = []
-    for i in np.unique(inside):
-        at = inside == i
-        turns = 2 * np.pi * np.outer(times[at] - (i + 0.5) * length, frequencies)
-        waves = np.concatenate([np.cos(turns), np.sin(turns)], axis=1)
-        stretches.append(Stretch(motion.rotations[at], waves, angles[at], sizes.copy()))
-    return stretches, frequencies
 
 
 def _round(motion: FreeMotion, stretches: list[Stretch], belief: _Belief, near: Array) -> _Belief:

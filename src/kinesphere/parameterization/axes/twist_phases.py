@@ -12,13 +12,10 @@ from kinesphere.parameterization.axes.fit import thinned, worth
 from kinesphere.parameterization.axes.kernels import turned_between
 from kinesphere.parameterization.confidence import with_tissue
 from kinesphere.parameterization.halves import halves_disagreement
-from kinesphere.parameterization.movement_filter import (
-    moving_frames,
-    persistence_threshold,
-    speed_threshold,
-)
+from kinesphere.parameterization.movement_filter import moving_frames
 from kinesphere.parameterization.samples import JointSamples, Phase, runs
 from kinesphere.parameterization.settings import ParameterizationSettings
+from kinesphere.parameterization.speed_threshold import persistence_threshold, speed_threshold
 
 NEAR = np.cos(np.deg2rad(15.0))  # of the limb: pronation is 5-10° off the forearm's line; hips of
 # somebody who turns the trunk showed 20°, an elbow of somebody who bends 24°: turns of two joints

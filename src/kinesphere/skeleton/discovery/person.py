@@ -4,22 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinesphere.geometry.length_units import SIZES, STATURE, times_too_large
+
 LIKELY = 2.0
 """Most cost for each length that is judged, in squared standard deviations: of a person 1 at most
 is expected, of what is none far more."""
-STATURE, SIZES = 1.6, 0.25
-"""m, and standard deviation of its logarithm: from a child of two, 0.85 m, to a tall adult."""
-NEAR_TEN = 0.25
-"""How far the decimal logarithm of a stature may be off for another unit of length to be why: of
-0.09 to 0.28 m it may be a person in a wrong unit, of 0.5 m a doll."""
-NO_UNIT = 0.28
-"""The same from which on no unit explains a stature: 0.84 to 3.0 m are explained."""
-TENS = tuple(10.0**n for n in range(-6, 7))
-INCHES_AND_FEET = (0.0254, 1 / 25.4, 2.54, 1 / 0.3048, 25.4, 39.37)
-"""Factors between these and metres, centimetres or millimetres, either taken for the other. Not
-those which make a doll of a person, 0.3048 and 1 / 2.54."""
-RARER = 3.0
-"""What inches and feet cost beside metric units, in squared standard deviations."""
 
 
 Arm = tuple[int, tuple[int, ...]]
@@ -70,19 +59,8 @@ class Person:
 
     @property
     def times_too_large(self) -> float:
-        """The factor between units that makes the stature likeliest, 1 where it is a doll's.
-
-        Where no such factor leads near a person's stature, the plain factor to the usual one.
-        """
-        times = float(np.log10(self.stature / STATURE))
-        if -1.0 < times < 0.0 and min(-times, 1.0 + times) >= NEAR_TEN:
-            return 1.0
-        factors = np.array([*TENS, *INCHES_AND_FEET])
-        away = np.abs(times - np.log10(factors))
-        cost = (away * np.log(10.0) / SIZES) ** 2
-        cost[len(TENS) :] += RARER
-        best = int(cost.argmin())
-        return float(factors[best]) if away[best] < NO_UNIT else 10.0**times
+        """The factor between units that makes the stature likeliest, 1 where it is a doll's."""
+        return times_too_large(self.stature)
 
     @property
     def hips_at(self) -> int:
