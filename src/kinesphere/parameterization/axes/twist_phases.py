@@ -18,7 +18,7 @@ from kinesphere.parameterization.movement_filter import (
     speed_threshold,
 )
 from kinesphere.parameterization.samples import JointSamples, Phase, runs
-from kinesphere.parameterization.settings import ParameterizationSettings
+from kinesphere.parameterization.settings import FilterSettings, ParameterizationSettings
 
 NEAR = np.cos(np.deg2rad(15.0))  # of the limb: pronation is 5-10° off the forearm's line; hips of
 # somebody who turns the trunk showed 20°, an elbow of somebody who bends 24°: turns of two joints
@@ -111,9 +111,7 @@ def _pure(samples: JointSamples, settings: ParameterizationSettings) -> tuple[Ph
     speeds = turned_between(samples.rotations, before, after) * rate / (after - before)
     if samples.frames is not None:
         speeds[samples.frames[after] - samples.frames[before] != after - before] = np.nan
-    threshold, valley = speed_threshold(speeds[np.isfinite(speeds)], s)
-    if not valley:  # much noise: what is pure enough below need not be doubted here
-        threshold = persistence_threshold(speeds[np.isfinite(speeds)]) or threshold
+    threshold = twist_threshold(speeds[np.isfinite(speeds)], s)
     moving = runs(moving_frames(speeds, threshold, rate, s))
     far = np.deg2rad(settings.axes.smallest_range)
     pure = []
@@ -125,6 +123,20 @@ def _pure(samples: JointSamples, settings: ParameterizationSettings) -> tuple[Ph
             if high - low >= far:
                 pure.append(phase)
     return tuple(pure)
+
+
+def twist_threshold(speeds: Array, settings: FilterSettings) -> float:
+    """Return the speed in rad/s from which a limb that turns about itself moves.
+
+    ``speeds``, (n,) rad/s, are without NaN. Where much noise leaves no deep valley, a shallow one
+    will do: what is pure enough need not be doubted here. One that is slower than any movement is
+    none: a single frame that happens to stand still makes it.
+    """
+    threshold, deep = speed_threshold(speeds, settings)
+    shallow = None if deep else persistence_threshold(speeds)
+    if shallow is not None and np.rad2deg(shallow) >= settings.slowest:
+        return shallow
+    return threshold
 
 
 def _turns(samples: JointSamples, phase: Phase) -> Array:
