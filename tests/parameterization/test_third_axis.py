@@ -11,10 +11,15 @@ from kinesphere.geometry.chain import joint_rotations
 from kinesphere.geometry.rotations import rotation_angle, rotation_exp
 from kinesphere.parameterization.anatomy import MIRROR
 from kinesphere.parameterization.axes.kernels import turned_between
-from kinesphere.parameterization.axes.twist_phases import TwistAxis, find_twist_axis
+from kinesphere.parameterization.axes.twist_phases import (
+    TwistAxis,
+    find_twist_axis,
+    twist_threshold,
+)
 from kinesphere.parameterization.confidence import TISSUE
 from kinesphere.parameterization.joint_angles import solve_joint
 from kinesphere.parameterization.settings import AxesSettings, ParameterizationSettings
+from kinesphere.parameterization.speed_threshold import persistence_threshold, speed_threshold
 from kinesphere.parameterization.third_axis import _serves, fit_axes
 from kinesphere.parameterization.view import view_joint
 
@@ -185,6 +190,24 @@ def test_much_noise_hides_no_third_axis(rng, skin):
         twist = find_twist_axis(view(rotation_exp(noise) @ rotations).samples, DEFAULTS)
         assert len(twist.phases) >= 3
         assert off(twist.axis, off_limb(8.0)) < 4.0
+
+
+def test_a_frame_that_stands_still_parts_no_movement_from_rest(rng):
+    """One slow frame among a thousand is the second peak of a histogram that has one."""
+    speeds = np.deg2rad(40) * np.exp(0.6 * rng.normal(size=1000))
+    slow = np.append(speeds, np.deg2rad(0.1))
+    assert persistence_threshold(speeds) is None
+    assert np.rad2deg(persistence_threshold(slow)) < 4
+    settings = DEFAULTS.filter
+    assert twist_threshold(slow, settings) == twist_threshold(speeds, settings)
+    assert np.rad2deg(twist_threshold(slow, settings)) == pytest.approx(settings.fallback)
+
+
+def test_a_shallow_valley_parts_them_where_there_is_no_deep_one(rng):
+    two = [np.deg2rad(one) * np.exp(0.4 * rng.normal(size=1000)) for one in (14, 42)]
+    speeds = np.concatenate(two)
+    assert not speed_threshold(speeds, DEFAULTS.filter)[1]
+    assert 18 < np.rad2deg(twist_threshold(speeds, DEFAULTS.filter)) < 36
 
 
 def test_turns_to_one_side_do_not_move_the_zero(rng):

@@ -166,12 +166,34 @@ def test_a_centre_drawn_away_is_not_said_to_be_where_it_was_expected():
     assert near[1].endswith("placed by expectation (book)")
 
 
-def test_a_joint_does_not_stray_because_a_small_plate_shakes(rng):
+def plate_that_shakes(rng, scale, noise=1e-3, n=4000):
+    """Return markers of a plate of 5 cm, and a joint 0.3 m away that strays by ``scale``."""
     plate = np.array([[0, 0, 0], [0.05, 0, 0], [0, 0.05, 0], [0.05, 0.04, 0.01]])
-    far, n = np.array([0.02, 0.3, 0.0]), 400
     turns = Rotation.random(n, rng=rng).as_matrix()
-    points = plate @ np.swapaxes(turns, 1, 2) + rng.normal(scale=1e-3, size=(n, 4, 3))
-    steady, loose = turns @ far, turns @ far + rng.normal(scale=0.02, size=(n, 3))
-    solid = measure_shape(points, 0.003, 0.005)
-    assert joint_noise(solid, steady, 1e-4) < 0.002  # seen from the plate it strays by 4 mm
-    assert joint_noise(solid, loose, 1e-4) == pytest.approx(0.02, rel=0.2)
+    points = plate @ np.swapaxes(turns, 1, 2) + rng.normal(scale=noise, size=(n, 4, 3))
+    joint = turns @ np.array([0.02, 0.3, 0.0]) + rng.normal(scale=scale, size=(n, 3))
+    return points, joint
+
+
+def test_a_joint_does_not_stray_because_a_small_plate_shakes(rng):
+    points, steady = plate_that_shakes(rng, 0.0)
+    assert joint_noise(measure_shape(points, 0.003, 0.005), steady, 1e-4) < 0.002  # beside 4 mm
+
+
+@pytest.mark.parametrize("scale", [0.004, 0.02])
+def test_a_joint_counts_beside_markers_by_what_both_stray(rng, scale):
+    """Markers of 1 mm are reckoned with √2 mm; so is what else there is, or it would outvote."""
+    points, joint = plate_that_shakes(rng, scale)
+    found = joint_noise(measure_shape(points, 0.003, 0.005), joint, 1e-4)
+    assert found == pytest.approx(np.sqrt(2) * scale, rel=0.12)
+
+
+def test_no_joint_is_surer_than_what_is_known_to_stray(rng):
+    points, steady = plate_that_shakes(rng, 0.0)
+    assert joint_noise(measure_shape(points, 0.003, 0.005), steady, 0.007) == 0.007
+
+
+def test_where_markers_are_seen_exactly_a_joint_keeps_its_say(rng):
+    """Anything is any number of times as noisy as they; 0.1 mm is the least that is believed."""
+    points, joint = plate_that_shakes(rng, 1e-5, noise=0.0)
+    assert joint_noise(measure_shape(points, 0.003, 0.005), joint, 1e-6) < 2e-4

@@ -18,6 +18,9 @@ from kinesphere.skeleton.poses import Neighbour, fit_poses
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.tree import Tree
 
+SHARP = 1e-4
+"""m, least noise that markers are believed to have: cameras see no sharper."""
+
 
 def measure_root(tree: Tree, sample: dict[str, Array], settings: SkeletonSettings) -> Body:
     """Measure the limb that all others hang from.
@@ -77,7 +80,8 @@ def measure_limb(
         with_joint = np.concatenate([with_joint, *(at[:, None] for at in beyond)], axis=1)
         shaped = measure_shape(with_joint, outlier, min_spread)
     else:
-        noise = np.append(noise, joint_noise(solid, centre, fit.noise))
+        shakes = np.trace(point_covariance(parent.pose_covariance, fit.centre)) / 3
+        noise = np.append(noise, joint_noise(solid, centre, float(np.sqrt(shakes))))
         shaped = measure_shape(with_joint, outlier, min_spread, noise=noise)
     if shaped is None:
         return measure_line(joint, parent, tree, sample, centre, settings)
@@ -100,7 +104,20 @@ def measure_limb(
 
 
 def joint_noise(solid: tuple[Array, Array, RigidFit], centre: Array, least: float) -> float:
-    """Return how far, in m, a joint strays in a limb beyond what the limb's own pose explains."""
+    """Return the noise of a joint in a limb, in each direction, on the scale of its markers'.
+
+    What a joint strays in the limb by more than the limb's own pose shakes there, as its markers'
+    residuals have it. Weights reckon markers noisier than residuals show, by `NOISE`, and so the
+    pose as shakier; what strays counts as many times as much, or the joint would outvote them.
+
+    Parameters
+    ----------
+    solid
+        Shape, noise and pose of the limb by its markers alone.
+    centre : (n_frames, 3) m, the joint in the world by the parent.
+    least
+        m, what is known to stray at least, on that scale: the parent's pose shakes, too.
+    """
     shape, noise, pose = solid
     local = into_frame(pose.rotations, pose.shifts, centre[:, None])
     known = np.isfinite(local).all(axis=(1, 2))
@@ -108,5 +125,8 @@ def joint_noise(solid: tuple[Array, Array, RigidFit], centre: Array, least: floa
         return least
     usual = np.median(local[known, 0], axis=0)
     strays = float(robust_rms(np.linalg.norm(local - usual, axis=2))[0])
-    shaky = point_covariance(pose_covariance(shape, np.hypot(noise, NOISE)), usual)
-    return float(np.sqrt(max(strays**2 - np.trace(shaky) / 3, least**2)))
+    shown, reckoned = (
+        float(np.trace(point_covariance(pose_covariance(shape, np.hypot(noise, one)), usual))) / 3
+        for one in (SHARP, NOISE)
+    )
+    return float(np.sqrt(max((strays**2 - shown) * reckoned / shown, least**2)))

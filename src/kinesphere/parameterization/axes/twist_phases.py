@@ -14,7 +14,7 @@ from kinesphere.parameterization.confidence import with_tissue
 from kinesphere.parameterization.halves import halves_disagreement
 from kinesphere.parameterization.movement_filter import moving_frames
 from kinesphere.parameterization.samples import JointSamples, Phase, runs
-from kinesphere.parameterization.settings import ParameterizationSettings
+from kinesphere.parameterization.settings import FilterSettings, ParameterizationSettings
 from kinesphere.parameterization.speed_threshold import persistence_threshold, speed_threshold
 
 NEAR = np.cos(np.deg2rad(15.0))  # of the limb: pronation is 5-10° off the forearm's line; hips of
@@ -108,9 +108,7 @@ def _pure(samples: JointSamples, settings: ParameterizationSettings) -> tuple[Ph
     speeds = turned_between(samples.rotations, before, after) * rate / (after - before)
     if samples.frames is not None:
         speeds[samples.frames[after] - samples.frames[before] != after - before] = np.nan
-    threshold, valley = speed_threshold(speeds[np.isfinite(speeds)], s)
-    if not valley:  # much noise: what is pure enough below need not be doubted here
-        threshold = persistence_threshold(speeds[np.isfinite(speeds)]) or threshold
+    threshold = twist_threshold(speeds[np.isfinite(speeds)], s)
     moving = runs(moving_frames(speeds, threshold, rate, s))
     far = np.deg2rad(settings.axes.smallest_range)
     pure = []
@@ -122,6 +120,20 @@ def _pure(samples: JointSamples, settings: ParameterizationSettings) -> tuple[Ph
             if high - low >= far:
                 pure.append(phase)
     return tuple(pure)
+
+
+def twist_threshold(speeds: Array, settings: FilterSettings) -> float:
+    """Return the speed in rad/s from which a limb that turns about itself moves.
+
+    ``speeds``, (n,) rad/s, are without NaN. Where much noise leaves no deep valley, a shallow one
+    will do: what is pure enough need not be doubted here. One that is slower than any movement is
+    none: a single frame that happens to stand still makes it.
+    """
+    threshold, deep = speed_threshold(speeds, settings)
+    shallow = None if deep else persistence_threshold(speeds)
+    if shallow is not None and np.rad2deg(shallow) >= settings.slowest:
+        return shallow
+    return threshold
 
 
 def _turns(samples: JointSamples, phase: Phase) -> Array:
