@@ -32,6 +32,8 @@ class Movement:
     """rad/s."""
     valley: bool
     """Whether the histogram had a valley to put the threshold in."""
+    slow: bool = False
+    """Whether nothing passed the usual threshold: `kinesphere.parameterization.slow_movement`."""
 
 
 def find_movement(

@@ -15,7 +15,6 @@ from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.axes.twist_phases import TwistAxis, find_twist_axis
 from kinesphere.parameterization.confidence import observed_n_axes
 from kinesphere.parameterization.joint import (
-    OUT_OF_REACH,
     asked_n_axes,
     fit_joint,
     larger_excursion_positive,
@@ -25,6 +24,7 @@ from kinesphere.parameterization.samples import Phase
 from kinesphere.parameterization.second_axis import second_axis
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.view import JointView, view_joint
+from kinesphere.parameterization.zero import OUT_OF_REACH
 
 LARGELY = 0.25  # of the frames: so often near a singular pose, three angles tell less than two
 TOLD = 0.9  # of the frames must tell the twist
