@@ -21,7 +21,7 @@ from kinesphere.parameterization.joint import (
 )
 from kinesphere.parameterization.joint_fit import JointFit, angles_between, or_null
 from kinesphere.parameterization.samples import Phase
-from kinesphere.parameterization.second_axis import second_axis
+from kinesphere.parameterization.second_axis import cone_spread, second_axis
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.view import JointView, view_joint
 from kinesphere.parameterization.zero import OUT_OF_REACH
@@ -73,6 +73,13 @@ def fit_axes(view: JointView, settings: ParameterizationSettings) -> JointFit:
     fit = fit_joint(view, settings)
     if asked == 3 and fit.source == "body":
         return _with_limb_line(view, settings) or fit
+    if asked is None and joint_kind(view.name) is None and len(fit.axes) == 1:
+        # a limb that turns on and on about one axis hides that it swings about another
+        spread = np.rad2deg(cone_spread(view.samples.positions, fit.axes[0]))
+        if spread > settings.axes.largest_spread:
+            two = fit_joint(view, settings, 2)
+            if two.source == "movement" and not two.doubts:
+                return replace(two, findings={**two.findings, "n_axes_by_data": 2})
     return fit
 
 
