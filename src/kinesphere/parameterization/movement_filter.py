@@ -33,7 +33,7 @@ class Movement:
     valley: bool
     """Whether the histogram had a valley to put the threshold in."""
     slow: bool = False
-    """Whether nothing passed the usual threshold: `kinesphere.parameterization.slow_movement`."""
+    """Whether hardly anything passed the usual threshold: `slow_movement.slow_movement`."""
 
 
 def find_movement(

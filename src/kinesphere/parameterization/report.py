@@ -28,7 +28,7 @@ class Told(NamedTuple):
     moves: bool
     """Whether there is any movement phase."""
     slow: bool
-    """Whether nothing passes the usual limit, and the threshold is one of noise."""
+    """Whether hardly anything passes the usual limit, and the threshold is one of noise."""
     twist: bool
     """Whether any frame tells the twist; True too where none is seen."""
 

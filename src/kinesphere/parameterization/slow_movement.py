@@ -17,6 +17,7 @@ from kinesphere.parameterization.samples import runs
 from kinesphere.parameterization.settings import ParameterizationSettings
 
 CLEAR = 3.0  # times the median speed of noise: of two components 0.2 % go beyond
+LITTLE = 1 / 3  # of all that a limb swings: noise on a slow movement passes the usual threshold too
 LONGEST = 2.0  # s, of a window
 COMPARED = 200  # poses, every one with every other
 
@@ -30,9 +31,13 @@ def widest_swing(positions: Array) -> float:
 
 
 def slow_movement(
-    positions: Array, rate: float, calibration: Mask, settings: ParameterizationSettings
+    positions: Array,
+    rate: float,
+    calibration: Mask,
+    moving: Mask,
+    settings: ParameterizationSettings,
 ) -> Movement | None:
-    """Return the phases of a limb that goes far but never fast; None where it does not.
+    """Return the phases of a limb that goes far but hardly ever fast; None where it does not.
 
     A movement as wide as an axis needs, slower than the threshold, takes ``smallest_range /
     fallback`` or longer: about a second, over which speeds are taken here. The threshold is three
@@ -47,13 +52,19 @@ def slow_movement(
         Hz.
     calibration : (n_frames,)
         Frames by which noise and range are told.
+    moving : (n_frames,)
+        Those of them that pass the usual threshold. Where a run of them is as wide as an axis
+        needs, or a third of all, there is nothing to mend.
     settings
         The filter's, and the least range.
     """
     known = np.asarray(np.isfinite(positions[:, 0]) & calibration)
     far = np.deg2rad(settings.axes.smallest_range)
     usual = settings.filter.fallback
-    if settings.filter.method == "paper" or usual <= 0 or widest_swing(positions[known]) < far:
+    if settings.filter.method == "paper" or usual <= 0:
+        return None
+    fast = max((widest_swing(positions[a:b]) for a, b in runs(moving)), default=0.0)
+    if fast >= far or (swing := widest_swing(positions[known])) < far or fast > LITTLE * swing:
         return None
     window = min(LONGEST, max(settings.filter.window, settings.axes.smallest_range / usual))
     noise = noise_speed(np.where(known[:, None], positions, np.nan), rate, window)

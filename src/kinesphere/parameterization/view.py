@@ -121,8 +121,9 @@ def view_joint(
     smooth = smoothed.rotations
     chosen = np.asarray(np.isfinite(smooth[:, 0, 0]) & calibration)
     movement = smoothed.slow or movement_of(smoothed.speeds, rate, settings.filter, calibration)
-    if first_view and not (movement.moving & chosen).any():
-        slow = slow_movement(carried(smooth, long_axis), rate, chosen, settings)
+    if first_view and not movement.valley:
+        positions = carried(smooth, long_axis)
+        slow = slow_movement(positions, rate, chosen, movement.moving & chosen, settings)
         smoothed = replace(smoothed, slow=slow)
         movement = slow or movement
     frames = np.flatnonzero(chosen)
