@@ -17,7 +17,7 @@ from kinesphere.parameterization.samples import runs
 from kinesphere.parameterization.settings import ParameterizationSettings
 
 CLEAR = 3.0  # times the median speed of noise: of two components 0.2 % go beyond
-LITTLE = 1 / 3  # of all that a limb swings: noise on a slow movement passes the usual threshold too
+LITTLE = 0.2  # of all that a limb swings: noise on a slow movement passes the usual threshold too
 LONGEST = 2.0  # s, of a window
 COMPARED = 200  # poses, every one with every other
 
@@ -54,7 +54,7 @@ def slow_movement(
         Frames by which noise and range are told.
     moving : (n_frames,)
         Those of them that pass the usual threshold. Where a run of them is as wide as an axis
-        needs, or a third of all, there is nothing to mend.
+        needs, or a fifth of all, there is nothing to mend.
     settings
         The filter's, and the least range.
     """
