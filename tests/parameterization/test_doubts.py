@@ -8,7 +8,8 @@ from numpy.testing import assert_array_equal
 
 from kinesphere.parameterization.confidence import AxesQuality
 from kinesphere.parameterization.doubts import apart, reasons_to_doubt, uncertain_in_free_motion
-from kinesphere.parameterization.report import reach_warnings, stage_warnings
+from kinesphere.parameterization.reach_report import reach_warnings
+from kinesphere.parameterization.report import stage_warnings
 from kinesphere.parameterization.settings import AxesSettings
 
 SETTINGS = AxesSettings()
@@ -158,7 +159,9 @@ def test_that_the_bodys_axes_are_farther_off_is_said_only_where_they_are():
     [
         (0.32, "movement", True),
         (0.2, "movement", False),
-        (0.5, "body", False),
+        (0.5, "body", True),
+        (0.2, "body", False),
+        (0.5, "reused", False),
         (None, "movement", False),
     ],
 )
@@ -166,7 +169,8 @@ def test_a_hinge_whose_limb_is_often_out_of_reach_is_named(share, source, said):
     fits = {"right_elbow": SimpleNamespace(axes=AXIS, source=source)}
     told = reach_warnings(fits, {"right_elbow": {"unreachable": share}}, 2.0)
     assert bool(told) == said
-    assert not said or "right_elbow (32% of the frames)" in told[0]
+    assert not said or f"right_elbow ({share:.0%} of the frames)" in told[0]
+    assert not said or ("body frame's" in told[0]) == (source == "body")
 
 
 def test_of_several_axes_it_is_said_which_one_halves_contradict():

@@ -49,12 +49,24 @@ def test_one_axis_rests_on_its_cone_where_the_limb_is_straight():
     assert_allclose(target, [0.96 / np.sqrt(2), 0.96 / np.sqrt(2), 0.28], atol=1e-12)
 
 
-@pytest.mark.parametrize("axes", [np.eye(3)[:1], np.array([[1.0, 0, 0], [1.0, 1e-9, 0]])])
-def test_where_nothing_is_unique_gravity_decides(axes):
+def test_where_two_axes_are_one_gravity_decides():
     gravity = np.array([0.9, 1e-5, 0])
-    target, unique = rest_target(axes, np.zeros(len(axes)), gravity, None)
+    axes = np.array([[1.0, 0, 0], [1.0, 1e-9, 0]])
+    target, unique = rest_target(axes, np.zeros(2), gravity, None)
     assert not unique
     assert_allclose(target, [1, 0, 0], atol=1e-4)
+
+
+@pytest.mark.parametrize("straight", [None, [1.0, 0.0, 0.0]])
+@pytest.mark.parametrize("height", [-0.6, 0.0, 0.8])
+def test_a_limb_that_goes_all_round_rests_on_its_cone_all_the_same(height, straight):
+    """After whole turns the centre of gravity is on the axis, where the limb never is."""
+    axes, gravity = np.eye(3)[:1], np.array([height, 1e-5, 0.0])
+    straight = None if straight is None else np.array(straight)
+    target, unique = rest_target(axes, np.array([height]), gravity, straight)
+    assert not unique
+    assert target[0] == pytest.approx(height, abs=1e-12)
+    assert np.linalg.norm(target) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_the_mean_of_slow_samples_beats_one_sample(rng, calibration):

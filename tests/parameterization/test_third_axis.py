@@ -436,3 +436,39 @@ def test_how_far_something_turns_between_frames(rng):
     assert_allclose(turned[:3], expected[:3], atol=1e-7)
     assert np.isnan(turned[3])
     assert turned[1] == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "strokes", "told"),
+    [
+        ("left_knee", [(45, 0, 0, 0)] * 5, 1),
+        ("left_hip", [(45, 0, 0, 0)] * 5, 1),
+        ("left_hip", SWINGS, 2),
+        ("joint_01", [(45, 0, 0, 0)] * 5, 1),
+    ],
+)
+def test_who_asks_for_three_keeps_what_was_measured(rng, name, strokes, told):
+    settings = ParameterizationSettings(axes=AxesSettings(counts=f"{name}=3"))
+    joint = view(move(rng, strokes, LIMB), name, settings=settings)
+    fit = fit_axes(joint, settings)
+    assert fit.axes.shape == (3, 3)
+    assert fit.source == "movement"
+    assert fit.n_told == told
+    assert fit.assumed == (True,) * (3 - told) + (False,) * told
+    assert np.isnan(fit.uncertainty[: 3 - told]).all()
+    assert np.isfinite(fit.uncertainty[3 - told :]).all()
+    assert off(fit.axes[2], FLEXION) < CLOSE
+    assert off(fit.axes[0], fit.rest @ LIMB) < EXACT
+    if told == 2:
+        assert off(fit.axes[1], ABDUCTION) < 2 * CLOSE
+    solved = solve_joint(joint, fit.axes, fit.rest, settings)
+    back = joint_rotations(fit.axes, fit.rest, LIMB, solved.angles, solved.twists)
+    assert rotation_angle(np.swapaxes(back, -1, -2) @ joint.rotations).max() < EXACT
+
+
+def test_three_of_a_limb_that_stands_are_the_bodys(rng):
+    settings = ParameterizationSettings(axes=AxesSettings(counts="left_knee=3"))
+    fit = fit_axes(
+        view(move(rng, [(0, 0, 0, 0)] * 5, LIMB), "left_knee", settings=settings), settings
+    )
+    assert (fit.source, len(fit.axes)) == ("body", 3)

@@ -46,6 +46,13 @@ def test_what_is_said_of_one_axis_is_not_said_of_another():
     assert found.reasons == (("axis 1: 12° off", "left hip"), ("axis 2: 20° off", "right hip"))
 
 
+def test_unlike_numbers_of_axes_are_no_range():
+    one = "only 1 of {} main movements is there"
+    warning = f"not told: neck ({one.format(3)}), left_hip ({one.format(2)})"
+    [found] = notices([warning], JOINTS)
+    assert sorted(found.reasons) == [(one.format(2), "left hip"), (one.format(3), "neck")]
+
+
 @pytest.mark.parametrize(
     ("warning", "said"),
     [

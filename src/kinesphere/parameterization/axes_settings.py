@@ -33,7 +33,8 @@ class AxesSettings:
         "",
         "number of axes by joint, e.g. 'left_wrist=1, hip=2'; a name without side means both; "
         "others by the joint's name, or by the data where it has none, and a third where the limb "
-        "turns about itself on purpose",
+        "turns about itself on purpose; of three asked for, those that no movement tells are put "
+        "beside the others",
     )
     windows: str = setting(
         "",

@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from kinesphere.parameterization.joined import doubted
-from kinesphere.parameterization.joint import OUT_OF_REACH
 from kinesphere.parameterization.joint_angles import solve_joint
 from kinesphere.parameterization.joint_fit import JointFit
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.third_axis import fit_axes
 from kinesphere.parameterization.view import JointView
+from kinesphere.parameterization.zero import OUT_OF_REACH
 
 WORSE = 2.0  # times: so much farther off, or less sure, than the recording's own axes, at least
 FAR = np.deg2rad(2.0)  # rms, and farther than they by as much: less is how a limb is dressed

@@ -33,9 +33,13 @@ from kinesphere.parameterization.settings import (
     ParameterizationSettings,
 )
 from kinesphere.parameterization.view import JointView
-from kinesphere.parameterization.zero import body_rest, movement_rest, reach_and_twist
-
-OUT_OF_REACH = 0.05  # of the frames; about axes a person has, the limb goes wherever it goes
+from kinesphere.parameterization.zero import (
+    OUT_OF_REACH,
+    aligned_rest,
+    body_rest,
+    movement_rest,
+    reach_and_twist,
+)
 
 
 def fit_joint(
@@ -101,7 +105,7 @@ def fit_joint(
     if not served and (len(axes) < n_axes or (doubts and not keep)):
         source = "body"
         axes = substitute_axes(view.name, n_axes, view.gravity)[::-1]
-        rest = body_rest(view, axes)
+        rest = body_rest(view, axes, settings)
         uncertainty = np.full(n_axes, np.nan)
         places = nearest_places(found.axes, axes)
     added = ""
@@ -164,7 +168,7 @@ def _one_and_across(
     if found.told is None or kept is None:
         return None
     axes, at = completed(found.axes[found.told], view.name, view.gravity)
-    rest = body_rest(view, axes)
+    rest = aligned_rest(view, axes)
     share, _ = reach_and_twist(view, axes, rest, settings)
     return None if share > OUT_OF_REACH else (axes, rest, kept.only(found.told, at))
 

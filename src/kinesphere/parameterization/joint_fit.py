@@ -59,7 +59,8 @@ def said_of(fit: JointFit) -> str:
     """
     if not fit.half_told:
         return "; ".join(fit.doubts)
-    across, told = fit.assumed.index(True), fit.assumed.index(False)
+    told = fit.assumed.index(False)
+    across = max(i for i, put in enumerate(fit.assumed) if put)  # the limb's own line comes first
     remark = fit.findings.get("remark")
     return "; ".join(
         f"axis {(told if doubt == remark else across) + 1}: {doubt}" for doubt in fit.doubts

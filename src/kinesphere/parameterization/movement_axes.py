@@ -12,6 +12,7 @@ from kinesphere.parameterization.one_of_two import REPEATED
 from kinesphere.parameterization.repeats import repeats
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import ParameterizationSettings
+from kinesphere.parameterization.slow_movement import widest_swing
 from kinesphere.parameterization.view import JointView
 
 
@@ -41,10 +42,7 @@ def movement_axes(view: JointView, n_axes: int, settings: ParameterizationSettin
 
     samples, axes = search(view.samples)
     if len(axes) == 0:
-        unseen = not view.calibration.any()
-        return MovementAxes(
-            axes, None, ("it is never seen" if unseen else "the limb hardly moves",)
-        )
+        return MovementAxes(axes, None, (_why_nothing(view, settings),))
     found = judged(view, samples, axes, n_axes, find, search, settings)
     long = long_phases(samples)
     if found.doubtful(options) and not free and 0 < len(long) < len(samples.phases):
@@ -62,3 +60,12 @@ def movement_axes(view: JointView, n_axes: int, settings: ParameterizationSettin
             if second.often_told(options):
                 return second
     return found
+
+
+def _why_nothing(view: JointView, settings: ParameterizationSettings) -> str:
+    """Return why a joint has no movement to find axes in, as a clause."""
+    if not view.calibration.any():
+        return "it is never seen"
+    if widest_swing(view.samples.positions) < np.deg2rad(settings.axes.smallest_range):
+        return "the limb hardly moves"
+    return "the limb moves too slowly to be told from noise"

@@ -24,6 +24,8 @@ class Movement:
     """rad/s."""
     valley: bool
     """Whether the histogram had a valley to put the threshold in."""
+    slow: bool = False
+    """Whether hardly anything passed the usual threshold: `slow_movement.slow_movement`."""
 
 
 def find_movement(

@@ -11,10 +11,6 @@ from kinesphere.parameterization.joint_fit import JointFit, said_of
 from kinesphere.parameterization.measures import number
 from kinesphere.parameterization.view import JointView
 
-LARGE_SHARE = 0.25
-"""Of the frames: a hinge whose limb is out of its reach more often than that is no plain hinge."""
-
-
 INSTEAD = "the body frame's serve instead"
 ADVICE = (
     " (to have them measured, move each of these joints about one axis at a time, twice and by 20° "
@@ -31,6 +27,8 @@ class Told(NamedTuple):
     """Whether the speeds have a valley to put it in."""
     moves: bool
     """Whether there is any movement phase."""
+    slow: bool
+    """Whether hardly anything passes the usual limit, and the threshold is one of noise."""
     twist: bool
     """Whether any frame tells the twist; True too where none is seen."""
 
@@ -42,6 +40,7 @@ def told(view: JointView) -> Told:
         threshold=view.movement.threshold,
         valley=view.movement.valley,
         moves=bool(view.samples.phases),
+        slow=view.movement.slow,
         twist=bool(view.twist_known[seen].any() or not seen.any()),
     )
 
@@ -125,13 +124,23 @@ def stage_warnings(
     no_valley = [
         name
         for name, joint in seen.items()
-        if joint.moves and not joint.valley and fits[name].source == "movement"
+        if joint.moves and not (joint.valley or joint.slow) and fits[name].source == "movement"
     ]
     if no_valley:
         threshold = np.rad2deg(seen[no_valley[0]].threshold)
         warnings.append(
             f"nothing parts movement from rest at {', '.join(no_valley)}: "
             f"{threshold:.1f} deg/s was taken as the limit"
+        )
+    slow = [
+        f"{name} ({np.rad2deg(joint.threshold):.1f} deg/s)"
+        for name, joint in seen.items()
+        if joint.moves and joint.slow and fits[name].source != "reused"
+    ]
+    if slow:
+        warnings.append(
+            "movement so slow that the limit between it and rest came down to three times the "
+            f"speed of noise: {', '.join(slow)}"
         )
     one_only = [
         name
@@ -143,6 +152,16 @@ def stage_warnings(
     ]
     if one_only:
         warnings.append(f"two axes were asked for, one is seen to move, at {', '.join(one_only)}")
+    three = [
+        f"{name} ({fit.n_told} from movement)"
+        for name, fit in fits.items()
+        if fit.source == "movement" and len(fit.axes) == 3 and any(fit.assumed[:1])
+    ]
+    if three:
+        warnings.append(
+            "three axes were asked for, less is seen to move; what was measured stays, the limb's "
+            f"own line and axes across were put beside it: {', '.join(three)}"
+        )
     untwisted = [name for name, joint in seen.items() if not joint.twist]
     if untwisted:
         warnings.append(f"nothing tells the twist at {', '.join(untwisted)}")
@@ -165,32 +184,6 @@ def _loose_warnings(fits: Mapping[str, JointFit]) -> list[str]:
         if loose:
             warnings.append(f"{sentence}{clause}: {', '.join(loose)}")
     return warnings
-
-
-def reach_warnings(
-    fits: Mapping[str, JointFit], findings: Mapping[str, Json], degrees: float
-) -> tuple[str, ...]:
-    """Return the warning that names hinges whose limb is often out of their reach.
-
-    Parameters
-    ----------
-    fits, findings
-        By joint name; findings hold what `result_findings` returns.
-    degrees
-        How far off counts as out of reach.
-    """
-    missed = []
-    for name, fit in fits.items():
-        found = findings[name]
-        share = found.get("unreachable") if isinstance(found, Mapping) else None
-        if fit.source == "movement" and len(fit.axes) == 1 and isinstance(share, float):
-            missed += [f"{name} ({share:.0%} of the frames)"] if share > LARGE_SHARE else []
-    if not missed:
-        return ()
-    return (
-        f"one axis leaves the limb more than {degrees:g}° out of its reach, by skin, by a movement "
-        f"it does not have or by an axis that is off: {', '.join(missed)}",
-    )
 
 
 def result_findings(residuals: Array, twists: Array, flags: Codes) -> dict[str, Json]:

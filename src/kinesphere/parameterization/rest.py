@@ -34,18 +34,19 @@ def rest_target(
     direction : (3,)
         Unit vector.
     unique
-        False where the direction had to be taken from the centre of gravity alone.
+        False where nothing tells a direction: with one axis some azimuth of the cone serves, as
+        when a limb turns on and on; with two that are one, the centre of gravity.
     """
     heights = np.nan_to_num(heights)
     if len(axes) == 1:
-        axis = axes[0]
-        sideways = (gravity if long_axis is None else long_axis) @ (
-            np.eye(3) - np.outer(axis, axis)
-        )
-        if (length := float(np.linalg.norm(sideways))) < 1e-3:
-            return gravity / max(float(np.linalg.norm(gravity)), 1e-12), False
-        h = float(np.clip(heights[0], -1, 1))
-        return h * axis + np.sqrt(1 - h * h) * sideways / length, True
+        axis, h = axes[0], float(np.clip(heights[0], -1, 1))
+        told = gravity if long_axis is None else long_axis
+        sideways = told - (told @ axis) * axis
+        unique = float(np.linalg.norm(sideways)) >= 1e-3
+        if not unique:  # any azimuth is as good, but the rest must be on the cone
+            sideways = np.eye(3)[np.abs(axis).argmin()]
+            sideways -= (sideways @ axis) * axis
+        return h * axis + np.sqrt(1 - h * h) * sideways / np.linalg.norm(sideways), unique
     a1, a2 = axes[-2:]
     k = float(a1 @ a2)
     normal = np.cross(a1, a2)

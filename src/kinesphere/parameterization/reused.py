@@ -9,12 +9,11 @@ from kinesphere.data import Json, Skeleton
 from kinesphere.parameterization.anatomy import n_told, wanted_n_axes
 from kinesphere.parameterization.giving_way import there_or_own
 from kinesphere.parameterization.joined import counterpart, joined, told_axes
-from kinesphere.parameterization.joint import OUT_OF_REACH
 from kinesphere.parameterization.joint_fit import JointFit
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.third_axis import fit_axes
 from kinesphere.parameterization.view import JointView
-from kinesphere.parameterization.zero import reach_and_twist
+from kinesphere.parameterization.zero import OUT_OF_REACH, reach_and_twist
 
 CARRIED = (
     "n_axes_by_data",

@@ -42,7 +42,9 @@ class FilterSettings:
     )
     fallback: float = setting(
         12.6,
-        "threshold speed where the histogram has no valley",
+        "threshold speed where the histogram has no valley; where hardly anything passes it, yet "
+        "the limb goes as far as an axis needs, it comes down to three times the speed of noise "
+        "(not by 'paper')",
         unit="deg/s",
         low=0.0,
         high=1000.0,

@@ -28,9 +28,9 @@ from kinesphere.parameterization.measures import (
     mid_point_residuals,
     paper_measures,
 )
+from kinesphere.parameterization.reach_report import reach_warnings
 from kinesphere.parameterization.report import (
     Told,
-    reach_warnings,
     result_findings,
     stage_warnings,
     told,

@@ -15,13 +15,14 @@ from kinesphere.parameterization.axes.registry import BY_ORIENTATION
 from kinesphere.parameterization.axes.twist_phases import TwistAxis, find_twist_axis
 from kinesphere.parameterization.axis_figures import PER_AXIS, listed_in
 from kinesphere.parameterization.confidence import observed_n_axes
-from kinesphere.parameterization.joint import OUT_OF_REACH, asked_n_axes, fit_joint
+from kinesphere.parameterization.joint import asked_n_axes, fit_joint
 from kinesphere.parameterization.joint_angles import larger_excursion_positive
 from kinesphere.parameterization.joint_fit import JointFit, angles_between, or_null
 from kinesphere.parameterization.samples import Phase
-from kinesphere.parameterization.second_axis import second_axis
+from kinesphere.parameterization.second_axis import cone_spread, second_axis
 from kinesphere.parameterization.settings import ParameterizationSettings
 from kinesphere.parameterization.view import JointView, view_joint
+from kinesphere.parameterization.zero import OUT_OF_REACH
 
 LARGELY = 0.25  # of the frames: so often near a singular pose, three angles tell less than two
 TOLD = 0.9  # of the frames must tell the twist
@@ -66,7 +67,36 @@ def fit_axes(view: JointView, settings: ParameterizationSettings) -> JointFit:
             if joined is not None and _serves(view, joined, settings):
                 return joined
             break
-    return fit_joint(view, settings)
+    fit = fit_joint(view, settings)
+    if asked == 3 and fit.source == "body":
+        return _with_limb_line(view, settings) or fit
+    if asked is None and joint_kind(view.name) is None and len(fit.axes) == 1:
+        # a limb that turns on and on about one axis hides that it swings about another
+        spread = np.rad2deg(cone_spread(view.samples.positions, fit.axes[0]))
+        if spread > settings.axes.largest_spread:
+            two = fit_joint(view, settings, 2)
+            if two.source == "movement" and not two.doubts:
+                return replace(two, findings={**two.findings, "n_axes_by_data": 2})
+    return fit
+
+
+def _with_limb_line(view: JointView, settings: ParameterizationSettings) -> JointFit | None:
+    """Return what the movement tells with the limb's own line as axis 1; None where it is nothing.
+
+    For a user who asked for three axes where fewer are seen to move.
+    """
+    kind = joint_kind(view.name)
+    line = TwistAxis(view.long_axis, (), np.nan, np.nan, np.nan)
+    swings = (N_AXES[kind] if kind else observed_n_axes(view.samples)) or 2
+    fits = [fit_joint(view, settings, 2)]
+    if swings == 1 and fits[0].n_told < 2:
+        fits.insert(
+            0, fit_joint(view, settings, 1)
+        )  # a hinge's axis is known better as its only one
+    for fit in fits:
+        if fit.source == "movement":
+            return _joined(view, fit, line, settings)
+    return None
 
 
 def _explained(
@@ -133,13 +163,14 @@ def _joined(
     if body is not None and about @ body[2] < 0:
         about = -about
     swings, uncertainty, assumed = fit.axes, fit.uncertainty, fit.assumed
+    put = not twist.phases  # nothing was measured of it
     between = 3 - 1 - len(swings)
     if between:
         side = np.cross(swings[0], about) if body is None else body[1]
         swings = np.array([second_axis(swings[0], about, side), swings[0]])
-        uncertainty, assumed = np.array([np.nan, uncertainty[0]]), (False, True, False)
-    elif assumed:
-        assumed = (False, *assumed)
+        uncertainty, assumed = np.array([np.nan, uncertainty[0]]), (put, True, False)
+    elif assumed or put:
+        assumed = (put, *(assumed or (False, False)))
     axes = np.array([about, *swings])
     closest = max(abs(float(a @ b)) for a, b in combinations(axes, 2))
     if closest > np.cos(np.deg2rad(settings.axes.smallest_angle)):
@@ -148,7 +179,9 @@ def _joined(
         axes = larger_excursion_positive(view, axes, fit.rest, settings)
     uncertainty = np.array([twist.uncertainty, *uncertainty])
     halves = float(np.rad2deg(twist.halves))
-    own = (float(np.rad2deg(twist.range)), twist.conditioning, halves, 0.0)
+    own: list[Json] = [float(np.rad2deg(twist.range)), twist.conditioning, halves, 0.0]
+    if put:
+        own = [None] * len(own)
     observed = fit.findings["n_axes_by_data"]
     spans: list[Json] = [list(t) for t in view.samples.with_phases(twist.phases).phase_times]
     swung = listed_in(fit.findings, "phases_s")

@@ -1,6 +1,6 @@
 """One joint as the whole recording shows it: samples, movement, calibration."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from kinesphere.parameterization.coupling import Neighbours
 from kinesphere.parameterization.movement_filter import Movement, limb_speeds, movement_of
 from kinesphere.parameterization.samples import JointSamples, runs, smooth_rotations
 from kinesphere.parameterization.settings import ParameterizationSettings
+from kinesphere.parameterization.slow_movement import slow_movement
 
 FAIR_SHARE = 0.25  # of the seen frames; the others may show movements that these do not
 NONE = Neighbours()
@@ -25,6 +26,8 @@ class Smoothed:
     """(n_frames, 3, 3)"""
     speeds: Array
     """(n_frames,) rad/s, of the limb."""
+    slow: Movement | None = None
+    """The movement of a limb that goes far but never fast, the same for every part of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,15 +110,22 @@ def view_joint(
     ``smoothed`` is what another view of the same joint has already.
 
     Frames outside ``calibration`` are neither found axes from nor smoothed into those that are; a
-    phase runs on across the few that are missing inside it.
+    phase runs on across the few that are missing inside it. Where none of them passes the threshold
+    the movement may be slow (`kinesphere.parameterization.slow_movement`).
     """
     cutoff = 0.0 if settings.filter.method == "paper" else settings.filter.cutoff
+    first_view = smoothed is None
     if smoothed is None:
         smooth = smooth_rotations(rotations, rate, cutoff)
         smoothed = Smoothed(smooth, limb_speeds(carried(smooth, long_axis), rate, settings.filter))
     smooth = smoothed.rotations
-    movement = movement_of(smoothed.speeds, rate, settings.filter, calibration)
     chosen = np.asarray(np.isfinite(smooth[:, 0, 0]) & calibration)
+    movement = smoothed.slow or movement_of(smoothed.speeds, rate, settings.filter, calibration)
+    if first_view and not movement.valley:
+        positions = carried(smooth, long_axis)
+        slow = slow_movement(positions, rate, chosen, movement.moving & chosen, settings)
+        smoothed = replace(smoothed, slow=slow)
+        movement = slow or movement
     frames = np.flatnonzero(chosen)
     if 0 < len(frames) < len(rotations):
         first, own = frames[0], slice(frames[0], frames[-1] + 1)

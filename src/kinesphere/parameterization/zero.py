@@ -17,6 +17,7 @@ from kinesphere.parameterization.view import JointView
 TRIAL_FRAMES = 600  # enough to tell which order of axes serves better
 CLEARLY = 0.5  # another order must lower the twist at least to this share to be taken: where
 # limbs really twist, the wrong order of axes lowers it to 0.65 now and then
+OUT_OF_REACH = 0.05  # of the frames; about axes a person has, the limb goes wherever it goes
 
 
 def movement_rest(
@@ -98,7 +99,7 @@ def _rest(
     return robust_rest(rotations, positions, slow, axes, target, settings.rest)
 
 
-def body_rest(view: JointView, axes: Array) -> Array:
+def aligned_rest(view: JointView, axes: Array) -> Array:
     """Return the rest orientation that goes with axes of the body frame.
 
     The limb aligned with its parent; a one-axis joint's is tilted onto the cone the limb really
@@ -111,6 +112,25 @@ def body_rest(view: JointView, axes: Array) -> Array:
     height = float(np.median(view.samples.positions @ axes[0]))
     target, unique = rest_target(axes, np.array([height]), view.gravity, view.long_axis)
     return rotation_between(view.long_axis, target) if unique else np.eye(3)
+
+
+def body_rest(view: JointView, axes: Array, settings: ParameterizationSettings) -> Array:
+    """Return `aligned_rest`; of a joint nobody named one that its axes can take to its poses.
+
+    Over a whole turn the mean orientation is none that the limb ever has: where it leaves poses
+    out of reach, slow samples near the place where the axes' circles meet serve instead.
+    """
+    rest = aligned_rest(view, axes)
+    if joint_kind(view.name) is not None or len(axes) > 2 or not view.calibration.any():
+        return rest
+    usual, _ = reach_and_twist(view, axes, rest, settings)
+    if usual <= OUT_OF_REACH:
+        return rest
+    # one axis takes the limb round its median cone, two across each other and it take it anywhere
+    heights = np.array([np.median(view.samples.positions @ axes[0])] if len(axes) == 1 else [0, 0])
+    met = _rest(view, axes, heights, settings)
+    share, _ = reach_and_twist(view, axes, met, settings)
+    return met if share < usual else rest
 
 
 def reach_and_twist(

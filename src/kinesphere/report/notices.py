@@ -8,7 +8,8 @@ from kinesphere.data import Skeleton
 from kinesphere.report.wording import unique
 
 _PLURALS = {"foot": "feet"}
-_NUMBER = re.compile(r"(?<!axis )\d+(?:\.\d+)?")  # which axis is no figure of it
+# which axis is no figure of it, nor how many there are: joints with unlike counts are no range
+_NUMBER = re.compile(r"(?<!axis )(?<!only \d of )(?!\d of \d main movements)\d+(?:\.\d+)?")
 _BRACKETED = re.compile(r"(\w+) \(([^()]*)\)(?:, |$)")
 _SUFFIX = re.compile(r"\.\w")
 _JOINERS = frozenset("'\"`=/\\.-")

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from kinesphere.data import Array
 from kinesphere.geometry.even_frames import every_nth
 from kinesphere.geometry.rotations import mean_rotation, rotation_log
+from kinesphere.geometry.vectors import lengths
 from kinesphere.parameterization.samples import Frames, JointSamples, Phase
 from kinesphere.parameterization.settings import AxesSettings
 
@@ -17,6 +18,8 @@ Labels = NDArray[np.intp]
 
 SAME = np.cos(np.deg2rad(25.0))  # a phase within 25° of an axis moves about it
 MOST_FRAMES = 400  # of one phase; what they have in common shows in fewer
+ALL_ROUND = np.deg2rad(170.0)  # from the mean orientation, and twice that about the mean direction
+SIDEWAYS = np.sin(np.deg2rad(6.0))  # half the least range: a limb nearer to its axis goes nowhere
 MANY_PHASES = 40  # all pairs of the heaviest so many are tried as a start
 
 
@@ -135,7 +138,7 @@ class Swing:
     """(n, 3) rad, rotation vectors across the limb's mean direction, weighted so that their squares
     add up to those of all frames."""
     direction: Array
-    """(3,) mean direction of the limb."""
+    """(3,) mean direction of the limb; 0 where that is its axis, for it goes all round."""
 
     def about(self, axes: Array) -> Array:
         """Return how much of the movement each axis explains, (n_axes, 3) → (n_axes,) rad²."""
@@ -149,9 +152,36 @@ def phase_swing(samples: JointSamples, phase: Phase) -> Swing:
     frames = thinned(phase)
     rotations = samples.rotations[frames]
     w = rotation_log(rotations @ mean_rotation(rotations).T)
-    p = samples.positions[frames].mean(axis=0)
+    positions = samples.positions[frames]
+    p = positions.mean(axis=0)
     p /= max(float(np.linalg.norm(p)), 1e-9)
+    if goes_round(w, positions, p):
+        p = np.zeros(3)
     return Swing(np.sqrt(worth(phase, frames)) * (w - np.outer(w @ p, p)), p)
+
+
+def goes_round(vectors: Array, positions: Array, middle: Array) -> bool:
+    """Return whether a limb turns on and on about its mean direction, as a crank does.
+
+    Then rotation about that direction is no twist: it is what moves the limb.
+
+    Parameters
+    ----------
+    vectors : (n, 3)
+        rad, rotation vectors from the mean orientation.
+    positions : (n, 3)
+        Directions of the limb, in the order of time.
+    middle : (3,)
+        Their mean direction.
+    """
+    if lengths(vectors).max() < ALL_ROUND:
+        return False  # there and back, or circling with hardly any rotation
+    across = positions - np.outer(positions @ middle, middle)
+    if np.median(lengths(across)) < SIDEWAYS:
+        return False  # it turns about itself
+    side = across[lengths(across).argmax()]
+    azimuth = np.arctan2(across @ np.cross(middle, side), across @ side)
+    return bool(np.ptp(np.unwrap(azimuth)) >= 2 * ALL_ROUND)
 
 
 def thinned(phase: Phase) -> Frames:
