@@ -145,4 +145,5 @@ def _import_seconds() -> float:
     return float(np.median([float(run.stdout) for run in runs]))
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

@@ -27,6 +27,7 @@ from kinesphere.quality.marker_checks import (
     check_jumps,
     check_never_seen,
 )
+from kinesphere.quality.sides import check_sides
 from kinesphere.quality.swaps import check_swaps
 
 BODY_HEIGHT = (0.3, 2.5)
@@ -67,6 +68,7 @@ def check_recording(recording: Recording) -> tuple[Finding, ...]:
         (check_coincident, apart),
         (check_jumps, apart),
         (check_swaps, apart),
+        (check_sides, apart),
         (_empty_frames, recording),
         (check_gaps, recording),
     )
