@@ -102,7 +102,8 @@ def _sides(recording: Recording, body: Body, first: int) -> Iterator[Finding]:
             "sides",
             "warning",
             f"left and right labels of the {part.name} {verb} exchanged: {_listed(pairs)} lie the "
-            f"wrong way round in {share:.0%} of the frames, by what the rest of the body calls right",
+            f"wrong way round in {share:.0%} of the frames, by what the rest of the body calls "
+            "right",
             REMEDY,
             markers=tuple(label for pair in pairs for label in pair),
             frame=first,
