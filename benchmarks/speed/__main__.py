@@ -23,6 +23,8 @@ from kinesphere.synthetic import Performance, make_performance, spoil_with_noise
 from kinesphere.synthetic.layout import Layout
 
 ROOT = Path(__file__).parents[2]
+RESULTS = ROOT / "benchmarks" / "results" / "speed.json"
+PAGE = ROOT / "docs" / "results" / "speed.md"
 LAYOUTS: tuple[Layout, ...] = ("bodies", "cmu41")
 GROWTH = (1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
 
@@ -33,34 +35,40 @@ def main() -> int:
     parser.add_argument("--frames", type=int, default=24_000)
     parser.add_argument("--twin-frames", type=int, default=400)
     parser.add_argument("--repeats", type=int, default=3, help="runs, of which the median counts")
+    parser.add_argument(
+        "--page", action="store_true", help="measure nothing, write the page of the last figures"
+    )
     arguments = parser.parse_args()
+    if arguments.page:
+        results = json.loads(RESULTS.read_text(encoding="utf-8"))
+    else:
+        results = _measured(arguments.frames, arguments.twin_frames, arguments.repeats)
+    text = page(results)
+    print(text)
+    for path in (RESULTS, PAGE):
+        path.parent.mkdir(parents=True, exist_ok=True)
+    PAGE.write_text(text, encoding="utf-8")
+    RESULTS.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+def _measured(n_frames: int, twin_frames: int, repeats: int) -> dict[str, Any]:
     layouts, paper = {}, {}
     for layout in LAYOUTS:
-        performance, recording = _performance(layout, arguments.frames)
-        layouts[layout], solution = _line(performance, recording, layout, arguments.repeats)
+        performance, recording = _performance(layout, n_frames)
+        layouts[layout], solution = _line(performance, recording, layout, repeats)
         if layout == "bodies":
-            paper = paper_comparison(
-                performance, solution, arguments.twin_frames, 3 * arguments.repeats
-            )
-    results = {
+            paper = paper_comparison(performance, solution, twin_frames, 3 * repeats)
+    return {
         "version": __version__,
         "python": platform.python_version(),
         "numpy": np.__version__,
-        "n_frames": arguments.frames,
+        "n_frames": n_frames,
         "import_s": _import_seconds(),
         "paper": paper,
         "layouts": layouts,
-        "growth": [_growth(n_frames) for n_frames in GROWTH],
+        "growth": [_growth(n) for n in GROWTH],
     }
-    text = page(results)
-    print(text)
-    for folder in ("benchmarks/results", "docs/results"):
-        (ROOT / folder).mkdir(parents=True, exist_ok=True)
-    (ROOT / "docs/results/speed.md").write_text(text, encoding="utf-8")
-    (ROOT / "benchmarks/results/speed.json").write_text(
-        json.dumps(results, indent=1) + "\n", encoding="utf-8"
-    )
-    return 0
 
 
 def _performance(layout: Layout, n_frames: int) -> tuple[Performance, Recording]:
@@ -145,4 +153,5 @@ def _import_seconds() -> float:
     return float(np.median([float(run.stdout) for run in runs]))
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from benchmarks.speed.asked import asked
 from benchmarks.speed.paper import PAPER_US
 
 _TITLES = {"bodies": "12 marker bodies", "cmu41": "CMU layout, built-in model"}
@@ -9,7 +10,8 @@ _TITLES = {"bodies": "12 marker bodies", "cmu41": "CMU layout, built-in model"}
 
 def page(results: dict[str, Any]) -> str:
     """Return the results as Markdown."""
-    return "\n".join([*_head(results), *_paper(results), *_line(results), *_growth(results)]) + "\n"
+    parts = (_head, asked, _paper, _line, _growth)
+    return "\n".join(line for part in parts for line in part(results)) + "\n"
 
 
 def _head(results: dict[str, Any]) -> list[str]:
@@ -52,8 +54,9 @@ def _paper(results: dict[str, Any]) -> list[str]:
         f"| rigid fits of all limbs, µs a frame | {found['rigid_fits_us']:.1f} | – | – |",
         f"| calibration: axes and rest of all joints, s | {found['calibration_s']:.2f} | – | – |",
         "",
-        "The whole stages below take longer: they also judge what they found, fill gaps, aid limbs",
-        "by their joints, and build the containers.",
+        "These are kernels alone, on arrays in memory: relative rotations, angles and twists; a",
+        "turn of every frame; a rigid fit a limb and frame; movement phases, axes, their halves",
+        "and rest positions. Nothing is read or written, and nothing is judged but the axes.",
         "",
     ]
 
@@ -64,6 +67,12 @@ def _line(results: dict[str, Any]) -> list[str]:
     heads = " | ".join(f"{_TITLES[name]}, s | µs a frame" for name in layouts)
     lines = [
         f"## The whole line on {n_frames:,} frames",
+        "",
+        "Stages as `kinesphere.solve` runs them: they also judge what they found, fill gaps, aid",
+        "limbs by their joints, tell uncertainty, and build the containers. `parameterization` is",
+        "calibration and all frames; section 7 of `docs/results/parameterization.md` times it and",
+        "`normalization` on the true motion, without noise. The whole line is what happens in",
+        "memory, from labelling to surface: no reading, no writing, no parameters back to motion.",
         "",
         f"| step | {heads} |",
         "|---|" + "---:|---:|" * len(layouts),

@@ -498,6 +498,23 @@ def test_doubts_about_reused_axes_stay_doubts(performance, solved):
     assert findings(thrice, "left_knee")["doubts"] == ["the moon was full"]
 
 
+@pytest.mark.parametrize("remark", ["", "a cloud passed"])
+def test_what_is_doubted_of_an_axis_that_is_not_reused_is_not_told(performance, solved, remark):
+    """The doubts are those of the axis that another, put across, replaces."""
+    reuse = doubtful(solved, "left_hip", "the moon was full", *([remark] if remark else []))
+    reuse.history[-1].findings["joints"]["left_hip"]["remark"] = remark or None
+    half = tuple(
+        replace(j, axes_assumed=(True, False)) if j.name == "left_hip" else j for j in reuse.joints
+    )
+    again = parameterize(
+        cut(performance.motion, slice(20)), reuse=replace(reuse, joints=half), give_way=True
+    )
+    assert again.skeleton.joint("left_hip").axes_sources == ("body", "reused")
+    told = [w for w in again.history[-1].warnings if "doubtful where they come from" in w]
+    said = "reused axes are doubtful where they come from: left_hip (axis 2: a cloud passed)"
+    assert told == ([said] if remark else [])
+
+
 def test_doubtful_axes_give_way_to_what_is_told_without_doubt(performance, solved):
     """The truth: 30° beside it at the knee that is doubted, and nothing but that knee changes."""
     reuse = doubtful(solved, "left_knee", "the moon was full")
@@ -552,6 +569,41 @@ def test_undoubted_axes_give_way_where_they_ruin_a_joint(performance, solved):
     assert knee.axes_source == "movement"
     assert_allclose(knee.axes, solved.skeleton.joint("left_knee").axes, atol=1e-12)
     assert again.skeleton.joint("right_knee").axes_source == "reused"
+
+
+def wobbling(motion, degrees):
+    """Return the motion with the left shank and foot moved to and fro across the knee's axis."""
+    joint = motion.skeleton.joint("left_knee")
+    shank = motion.skeleton.limb_names.index("left_shank")
+    foot = motion.skeleton.limb_names.index("left_foot")
+    times = np.arange(motion.n_frames) / motion.rate
+    by = Rotation.from_rotvec(
+        np.deg2rad(degrees) * np.sin(40.0 * times)[:, None] * np.array([1.0, 0.0, 0.0])
+    ).as_matrix()
+    before = motion.rotations[:, shank]
+    across = before @ by @ np.swapaxes(before, -1, -2)
+    knee = motion.origins[:, shank] + before @ joint.centre_in_child
+    rotations, origins = motion.rotations.copy(), motion.origins.copy()
+    for limb in (shank, foot):
+        rotations[:, limb] = across @ rotations[:, limb]
+        arm = (origins[:, limb] - knee)[..., None]
+        origins[:, limb] = knee + (across @ arm)[..., 0]
+    return replace(motion, rotations=rotations, origins=origins)
+
+
+@pytest.mark.parametrize(("degrees", "gives_way"), [(3.0, True), (12.0, False)])
+def test_own_axes_serve_where_the_limb_stays_near_them(performance, degrees, gives_way):
+    """A real knee is out of a hinge's 2° in many frames, and still far nearer its own than 34°."""
+    reuse = turned_off(performance.skeleton, 0.6, "left_knee")
+    motion = wobbling(performance.motion, degrees)
+    own = parameterize(motion)
+    assert findings(own, "left_knee")["unreachable"] > 0.3
+    again = parameterize(motion, reuse=reuse, give_way=True)
+    told = "".join(again.history[-1].warnings)
+    assert ("give way" in told) == gives_way
+    assert ("reused axes do not fit this recording" in told) == (not gives_way)
+    knee = again.skeleton.joint("left_knee")
+    assert knee.axes_source == ("movement" if gives_way else "reused")
 
 
 def test_what_does_not_apply_is_said(performance):

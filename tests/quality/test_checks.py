@@ -246,6 +246,26 @@ def test_exchanges_are_found_across_blocks_of_frames(clean, monkeypatch, block):
     assert (found.frame, dict(found.numbers)["swaps"]) == (FIRST + 20, 2)
 
 
+def test_two_bad_samples_that_meet_in_time_are_no_exchange(clean):
+    """One marker comes back from far off as its neighbour goes there: nothing changed places."""
+    markers = clean.markers.copy()
+    far = np.array([0.0, 6.0, 8.0])
+    there = [clean.labels.index(label) for label in ("T10", "STRN")]
+    markers[18:20, there[0]] += far
+    markers[20:22, there[1]] += far + np.array([0.3, 0, 0])
+    found = check_recording(replace(clean, markers=markers))
+    assert sorted((f.rule, *f.markers) for f in found) == [("jump", "STRN"), ("jump", "T10")]
+
+
+@pytest.mark.parametrize("length", [1, 2, 12])
+def test_an_exchange_of_any_length_is_found(clean, length):
+    markers = clean.markers.copy()
+    columns = [clean.labels.index(label) for label in ("CLAV", "LANK")]
+    markers[20 : 20 + length, columns] = markers[20 : 20 + length, columns[::-1]]
+    swap = only([f for f in check_recording(replace(clean, markers=markers)) if f.rule == "swap"])
+    assert (swap.frame, dict(swap.numbers)["swaps"]) == (FIRST + 20, 2)
+
+
 def test_one_marker_that_jumps_onto_another_is_no_exchange(clean):
     there = clean.markers[20:, clean.labels.index("RTOE")]
     spoilt = spoiled(clean, "LANK", slice(20, None), there + 0.02)

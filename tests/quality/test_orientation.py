@@ -353,7 +353,10 @@ class TestWhoShowsIt:
         labels = tuple(exchanged.get(label, label) for label in walker.labels)
         world = orient(replace(walker, labels=labels))
         assert step(world).findings["mirrored"] is False
-        assert "left and right labels may be mixed up" in step(world).warnings[0]
+        assert (
+            "labels of left and right, or of front and back, may be mixed up"
+            in step(world).warnings[0]
+        )
 
     def test_nobody_and_no_field_is_the_custom_aloud(self, rng):
         cloud = Recording(rng.normal(size=(30, 5, 3)), ("a", "b", "c", "d", "e"), 60.0)

@@ -120,6 +120,30 @@ def test_a_person_stands_in_a_right_handed_world(read, name):
     assert np.mean(turned[known & (above > 1.0)] > 0) > 0.99
 
 
+@pytest.mark.parametrize("name", [*FULL_BODY, *OTHERS, "video/pose2sim/Balancing_for_IK.trc"])
+def test_every_part_of_the_body_is_the_right_way_round(read, name):
+    found = check_recording(read(name))
+    assert [f.what for f in found if f.rule in ("sides", "heels")] == []
+
+
+@pytest.mark.parametrize("name", FULL_BODY)
+def test_legs_of_exchanged_names_are_told(read, name):
+    recording = read(name)
+    of_the_legs = ("THI", "KNE", "SHN", "TIB", "ANK", "HEE", "TOE", "MT5", "NAV")
+    sides = {"L": "R", "R": "L"}
+
+    def exchanged(label):
+        subject, colon, bare = label.rpartition(":")
+        if bare[0] not in sides or not bare[1:].startswith(of_the_legs):
+            return label
+        return subject + colon + sides[bare[0]] + bare[1:]
+
+    labels = tuple(map(exchanged, recording.labels))
+    (found,) = (f for f in check_recording(replace(recording, labels=labels)) if f.rule == "sides")
+    assert "labels of the legs are exchanged" in found.what
+    assert set(found.markers) == {label for label in labels if exchanged(label) != label}
+
+
 @pytest.mark.parametrize("name", FULL_BODY)
 def test_a_wrong_field_is_overruled_aloud_and_only_a_wrong_one(read, name):
     *_, up = FULL_BODY[name]

@@ -177,4 +177,5 @@ def _milliseconds(work: Callable[[], object]) -> float:
     return 1e3 * min(times)
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

@@ -5,12 +5,14 @@ import os
 import shutil
 import stat
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from kinesphere.errors import UnwritableFile
 
+LISTED = 5
+"""Names of files that are told of those that would be lost."""
 _MAY_WRITE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
 
@@ -47,15 +49,17 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 @contextmanager
-def replacing_directory(path: str | Path, is_ours: Callable[[Path], bool]) -> Iterator[Path]:
+def replacing_directory(
+    path: str | Path, others: Callable[[Path], Iterable[str]]
+) -> Iterator[Path]:
     """Give a new folder to fill; when the block ends well it takes the place of ``path``.
 
     Parameters
     ----------
     path
         Where the folder shall be: nothing, an empty folder, or one of ours.
-    is_ours
-        Tells a folder of ours, which may be replaced, from any other, which may not.
+    others
+        Returns what in a folder is not ours and would be lost; none where it may be replaced.
 
     Raises
     ------
@@ -63,7 +67,7 @@ def replacing_directory(path: str | Path, is_ours: Callable[[Path], bool]) -> It
         If ``path`` is a file or somebody else's folder, or cannot be written to.
     """
     path = Path(os.path.abspath(path))  # "here/." must have a name to be swapped under
-    check_directory_place(path, is_ours)
+    check_directory_place(path, others)
     with _said_plainly(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         beside = Path(tempfile.mkdtemp(prefix=f".{path.name[:40]}.", dir=path.parent))
@@ -100,7 +104,7 @@ def check_file_place(path: str | Path) -> None:
         _check_may_write(path.parent)
 
 
-def check_directory_place(path: str | Path, is_ours: Callable[[Path], bool]) -> None:
+def check_directory_place(path: str | Path, others: Callable[[Path], Iterable[str]]) -> None:
     """Raise UnwritableFile unless a folder can be made at ``path``, or take the place of ours.
 
     As `replacing_directory` would, but nothing is written.
@@ -109,9 +113,11 @@ def check_directory_place(path: str | Path, is_ours: Callable[[Path], bool]) -> 
     with _said_plainly(path):
         if path.exists() and not path.is_dir():
             raise UnwritableFile(f"{path} is a file; a folder cannot take its place")
-        if path.is_dir() and any(path.iterdir()) and not is_ours(path):
+        if path.is_dir() and (lost := sorted(others(path))):
+            listed = ", ".join(lost if len(lost) <= LISTED else [*lost[:LISTED], "…"])
             raise UnwritableFile(
-                f"{path} holds other files, and no solution to replace; name a new or empty folder"
+                f"{path} holds other files, which would be lost ({listed}); move them elsewhere, "
+                "or name a new or empty folder"
             )
         # the folder itself is swapped for a new one, so its parent is what must be open to us
         _check_may_write(next(above for above in path.parents if above.exists()))

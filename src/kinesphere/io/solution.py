@@ -80,7 +80,7 @@ def write_solution(
     recording, skeleton = solution.recording, solution.skeleton
     details = {k: None if k == _C3D else v for k, v in recording.details.items()}
     bare = replace(solution, recording=replace(recording, details=details))
-    with replacing_directory(directory, _only(extra)) as folder:
+    with replacing_directory(directory, _others(extra)) as folder:
         write_c3d(with_joints(solution), folder / RECORDING)
         write_skeleton(skeleton, folder / "skeleton.json")
         write_parameters(solution.parameters, folder / "parameters.csv")
@@ -106,13 +106,13 @@ def check_solution_place(directory: str | Path, extra: Iterable[str] = ()) -> No
     extra
         Names of the further files.
     """
-    check_directory_place(directory, _only(extra))
+    check_directory_place(directory, _others(extra))
 
 
-def _only(extra: Iterable[str]) -> Callable[[Path], bool]:
-    """Return what tells a folder of nothing but a solution's files."""
+def _others(extra: Iterable[str]) -> Callable[[Path], set[str]]:
+    """Return what tells which files in a folder are not a solution's."""
     ours = {*FILES, *_BESIDE, *extra}
-    return lambda folder: {entry.name for entry in folder.iterdir()} <= ours
+    return lambda folder: {entry.name for entry in folder.iterdir()} - ours
 
 
 def read_solution(directory: str | Path) -> Solution:

@@ -17,6 +17,7 @@ WORSE = 2.0  # times: so much farther off, or less sure, than the recording's ow
 FAR = np.deg2rad(2.0)  # rms, and farther than they by as much: less is how a limb is dressed
 LARGELY = 0.5  # of the frames, and
 WRONG = np.deg2rad(10.0)  # rms: no skin and no marker put on anew keeps a limb so far from its axes
+NEAR = np.deg2rad(5.0)  # rms: own axes from which a limb stays farther away are not worth more
 
 
 class _Miss(NamedTuple):
@@ -40,8 +41,9 @@ def there_or_own(
 
     A functional trial is made for its axes to serve elsewhere, so they do where nothing was
     doubted of them, unless that is plainly wrong: out of reach in half of the frames and 10° rms
-    off, where this recording's own axes reach the limb. Where they are doubted, or one was put
-    across another, they give way to own axes that are not doubted or that suit clearly better.
+    off, where this recording's own axes keep the limb within 5° rms. Where they are doubted, or one
+    was put across another, they give way to own axes that are not doubted or that suit clearly
+    better.
 
     A limb may leave the reach of any axes a little (a hinge's cone above all); so where it does
     often, the recording's own axes, found as if none were reused, are the measure.
@@ -67,8 +69,7 @@ def there_or_own(
         f"out of their reach in {theirs.share:.0%} of the frames and "
         f"{np.rad2deg(theirs.rms):.1f}° rms off instead of {np.rad2deg(ours.rms):.1f}° by its own"
     )
-    within = ours.share <= OUT_OF_REACH
-    wrong = give_way and far and within and theirs.share > LARGELY and theirs.rms > WRONG
+    wrong = give_way and far and theirs.share > LARGELY and theirs.rms > WRONG and ours.rms <= NEAR
     why = []
     if doubtful and (far or _surer(own, there)):
         why.append("doubtful where they come from")

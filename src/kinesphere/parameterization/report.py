@@ -7,6 +7,7 @@ import numpy as np
 
 from kinesphere.data import Array, Codes, JointFlag, Json
 from kinesphere.parameterization.anatomy import room
+from kinesphere.parameterization.joined import doubted as doubted_of
 from kinesphere.parameterization.joint_fit import JointFit, said_of
 from kinesphere.parameterization.measures import number
 from kinesphere.parameterization.view import JointView
@@ -103,9 +104,9 @@ def stage_warnings(
             f"its poses: {', '.join(added)}"
         )
     doubted = [
-        f"{name} ({said_of(fit)})"
+        f"{name} ({said})"
         for name, fit in fits.items()
-        if fit.source == "reused" and fit.doubts
+        if fit.source == "reused" and (said := _said_of_reused(fit))
     ]
     if doubted:
         warnings.append(f"reused axes are doubtful where they come from: {', '.join(doubted)}")
@@ -166,6 +167,14 @@ def stage_warnings(
     if untwisted:
         warnings.append(f"nothing tells the twist at {', '.join(untwisted)}")
     return tuple(warnings)
+
+
+def _said_of_reused(fit: JointFit) -> str:
+    """Return what is doubted of the axes that another recording told; the others are from here."""
+    reused = [k for k, source in enumerate(fit.sources) if source == "reused"]
+    if len(reused) == len(fit.axes) and not fit.half_told:
+        return "; ".join(fit.doubts)
+    return "; ".join(f"axis {k + 1}: {doubt}" for k in reused for doubt in doubted_of(fit, k))
 
 
 def _loose_warnings(fits: Mapping[str, JointFit]) -> list[str]:

@@ -42,8 +42,9 @@ class Body:
 
     def __init__(self, recording: Recording, columns: Mapping[str, int]) -> None:
         """Take the markers at ``columns`` (name without subject, any case → column)."""
-        self._markers = recording.markers
+        self.markers = recording.markers
         self._columns: dict[str, list[int]] = {}
+        sides: dict[str, dict[str, int]] = {"L": {}, "R": {}}
         for name, column in columns.items():
             whole = name.upper()
             match = _SIDED.fullmatch(whole)
@@ -51,6 +52,11 @@ class Body:
             side, core = match["side"] or "", match["core"]
             for spelling in {whole, core, side + core}:
                 self._columns.setdefault(spelling, []).append(column)
+            if side:
+                sides[side].setdefault(core, column)
+        left, right = sides["L"], sides["R"]
+        self.pairs = {core: (left[core], right[core]) for core in left if core in right}
+        """Name without side → columns of the left and the right marker, where both are there."""
 
     def middle(self, *names: str) -> Array | None:
         """Return the middle of the markers of these names that are seen, (n_frames, 3) m.
@@ -59,11 +65,21 @@ class Body:
         where none of them is seen.
         """
         columns = sorted({c for name in names for c in self._columns.get(name, ())})
-        return mean_seen(self._markers[:, columns]) if columns else None
+        return mean_seen(self.markers[:, columns]) if columns else None
 
     def side(self, side: str, names: Iterable[str]) -> Array | None:
         """Return the middle of one side's markers, ``L`` or ``R``, as ``middle`` does."""
         return self.middle(*(side + name for name in names))
+
+    def columns(self, side: str, names: Iterable[str]) -> list[int]:
+        """Return the columns of one side's markers of these names, in the order of the names."""
+        found = (c for name in names for c in self._columns.get(side + name, ()))
+        return list(dict.fromkeys(found))
+
+    def rightwards(self, names: Iterable[str]) -> Array | None:
+        """Return what points from the left side's markers to the right side's, (n_frames, 3) m."""
+        left, right = (self.side(side, names) for side in "LR")
+        return None if left is None or right is None else right - left
 
 
 def thinned(recording: Recording, most: int) -> Recording:

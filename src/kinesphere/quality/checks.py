@@ -14,6 +14,7 @@ from kinesphere.quality.marker_checks import (
     check_jumps,
     check_never_seen,
 )
+from kinesphere.quality.sides import check_sides
 from kinesphere.quality.swaps import check_swaps
 from kinesphere.quality.unit import check_unit, sized
 
@@ -53,6 +54,7 @@ def check_recording(recording: Recording) -> tuple[Finding, ...]:
         (check_coincident, apart),
         (check_jumps, apart),
         (check_swaps, apart),
+        (check_sides, apart),
         (_empty_frames, recording),
         (check_gaps, recording),
     )

@@ -14,12 +14,13 @@ import numpy as np
 from kinesphere.data import Array
 from kinesphere.quality import body as names
 from kinesphere.quality.body import Body, unit
+from kinesphere.quality.feet import exchanged_heel
 
 DECISIVE = 0.2
 """Least |(up × left-to-right) · forward| of unit vectors that says anything: a part whose three
 directions lie nearly in a plane may tip over by noise alone."""
 
-_SHOULDERS = ("SHO", "SHOULDER", "FSH", "BSH", "ACR")
+ACROMIA = ("SHO", "SHOULDER", "FSH", "BSH", "ACR")
 
 
 @dataclass(frozen=True)
@@ -52,15 +53,31 @@ def find_chirality(bodies: Iterable[Body]) -> Chirality:
     return Chirality(right, len(decisive))
 
 
+def contradicted_girdles(body: Body) -> set[str]:
+    """Return which of ``shoulders`` and ``pelvis`` have left and right the wrong way round.
+
+    As up and front of their own part have it, or of the feet for the pelvis, in most of what is
+    decisive; either or both may be in a mirror image.
+    """
+    trunk, *rest = map(_volume, _parts(body))
+    wrong = set()
+    for name, volumes in (("shoulders", [trunk]), ("pelvis", rest)):
+        together = np.concatenate([*(v for v in volumes if v is not None), np.empty(0)])
+        decisive = together[np.abs(together) > DECISIVE]
+        if len(decisive) and np.mean(decisive > 0) < 0.5:
+            wrong.add(name)
+    return wrong
+
+
 def _parts(body: Body) -> list[_Part]:
-    """Return the parts whose markers tell all three directions, if the body has them."""
+    """Return trunk, pelvis and feet, each told by what the body has of its markers."""
     waist = (*names.WAIST_FRONT, *names.WAIST_BACK)
     left, right = (body.side(side, (*waist, *names.HIPS)) for side in "LR")
     trunk = _Part(
         bottom=body.middle("T10", "STRN"),
         top=body.middle("C7", "CLAV"),
-        left=body.side("L", _SHOULDERS),
-        right=body.side("R", _SHOULDERS),
+        left=body.side("L", ACROMIA),
+        right=body.side("R", ACROMIA),
         back=body.middle("C7", "T10"),
         front=body.middle("CLAV", "STRN"),
     )
@@ -76,6 +93,8 @@ def _parts(body: Body) -> list[_Part]:
 
 
 def _foot(body: Body, side: str, left: Array | None, right: Array | None) -> _Part:
+    if exchanged_heel(body, side):  # which way it points is known to be wrong
+        return _Part(None, None, None, None, None, None)
     ankle, heel = body.side(side, names.ANKLES), body.side(side, names.HEELS)
     return _Part(
         bottom=ankle,

@@ -142,7 +142,8 @@ def _judge_mirror(chirality: Chirality, wanted: str) -> tuple[bool, tuple[str, .
         )
         return True, (said,)
     if chirality.n > 0 and not fits:
-        return False, (f"{found}; left and right labels may be mixed up",)
+        said = f"{found}; labels of left and right, or of front and back, may be mixed up"
+        return False, (said,)
     return False, ()
 
 

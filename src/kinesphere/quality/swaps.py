@@ -22,16 +22,15 @@ EXCHANGED = 0.5
 def check_swaps(recording: Recording) -> Iterator[Finding]:
     """Find pairs of labels that change places from one frame to the next.
 
-    Either marker appears where the other one was, by a step unlike those around it. A change over
-    a gap is not seen.
+    Either marker appears where the other one was, by a step unlike those around it, as near as
+    markers come to their last place in the frames around: two bad samples, one of which ends as
+    the other begins, leave both farther off. A change over a gap is not seen.
     """
     labelled = labelled_columns(recording)
     times: dict[tuple[int, int], list[int]] = {}
     for frame, columns in _sudden_steps(recording, labelled):
         there = [labelled[c] for c in columns]
-        for a, b in _exchanges(
-            recording.markers[frame - 1, there], recording.markers[frame, there]
-        ):
+        for a, b in _exchanges(recording.markers[max(frame - 2, 0) : frame + 2, there], frame > 1):
             times.setdefault((columns[a], columns[b]), []).append(frame)
     for (a, b), frames in times.items():
         pair = recording.labels[labelled[a]], recording.labels[labelled[b]]
@@ -62,8 +61,24 @@ def _sudden_steps(recording: Recording, labelled: list[int]) -> Iterator[tuple[i
                 yield int(first + step) + 1, np.flatnonzero(sudden[step]).tolist()
 
 
-def _exchanges(before: Array, after: Array) -> list[tuple[int, int]]:
-    """Return the pairs of markers, (k, 3) m each, of which either is where the other was."""
-    off = lengths(after[:, None] - before[None])
-    there = off < EXCHANGED * off.diagonal()[:, None]
+def _exchanges(points: Array, second: bool) -> list[tuple[int, int]]:
+    """Return the pairs of markers of which either is where the other was.
+
+    Parameters
+    ----------
+    points : (n_frames, k, 3)
+        m, from the frame before the step (with the one before that, if there is) to the frame
+        after it.
+    second
+        Whether the step is the second one of them, not the first.
+    """
+    steps = lengths(np.diff(points, axis=0))
+    at = int(second)
+    unknown = np.full(points.shape[1], np.nan)
+    earlier = steps[0] if second else unknown
+    later = steps[at + 1] if at + 1 < len(steps) else unknown
+    # [a, b]: of the body that is called b before and a after
+    usual = np.fmax(earlier[None], later[:, None])
+    off = lengths(points[at + 1][:, None] - points[at][None])
+    there = (off < EXCHANGED * off.diagonal()[:, None]) & (off <= np.fmax(FAR, SUDDEN * usual))
     return [(int(a), int(b)) for a, b in np.argwhere(there & there.T) if a < b]

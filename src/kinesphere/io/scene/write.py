@@ -42,15 +42,17 @@ def write_scene(
     """
     if images not in KINDS:
         raise BadSetting(f"images = {images!r}; known are {', '.join(KINDS)}")
-    with replacing_directory(directory, _is_ours) as folder:
+    with replacing_directory(directory, _others) as folder:
         _write_images(scene, folder, images, progress)
         write_calibration(scene.cameras, folder / "calibration.toml")
         (folder / "SCENE.toml").write_text(_scene_toml(scene, folder, images), encoding="utf-8")
     return Path(directory) / "SCENE.toml"
 
 
-def _is_ours(folder: Path) -> bool:
-    return (folder / "SCENE.toml").is_file() and (folder / "calibration.toml").is_file()
+def _others(folder: Path) -> list[str]:
+    """Return everything in a folder that is no scene's."""
+    ours = (folder / "SCENE.toml").is_file() and (folder / "calibration.toml").is_file()
+    return [] if ours else [entry.name for entry in folder.iterdir()]
 
 
 def _write_images(

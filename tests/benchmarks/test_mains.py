@@ -1,0 +1,61 @@
+"""Importing a benchmark measures nothing; pages say what their figures say."""
+
+import ast
+import json
+from pathlib import Path
+
+import pytest
+from benchmarks.speed.asked import asked
+from benchmarks.speed.page import page
+
+ROOT = Path(__file__).parents[2]
+MODULES = sorted((ROOT / "benchmarks").rglob("*.py"))
+SPEED = json.loads((ROOT / "benchmarks" / "results" / "speed.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("module", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_nothing_is_called_but_by_who_runs_it(module):
+    """A bare call at the top of a module runs on import, in worker processes and tests, too."""
+    tree = ast.parse(module.read_text(encoding="utf-8"))
+    bare = [n for n in tree.body if isinstance(n, ast.Expr) and isinstance(n.value, ast.Call)]
+    assert [ast.unparse(node) for node in bare] == []
+    if module.name == "__main__.py":
+        last = tree.body[-1]
+        assert ast.unparse(last).startswith("if __name__ == '__main__':")
+
+
+def test_the_speed_page_is_what_was_measured():
+    written = (ROOT / "docs" / "results" / "speed.md").read_text(encoding="utf-8")
+    assert written == page(SPEED)
+
+
+@pytest.mark.parametrize(
+    ("figure", "what", "at"),
+    [
+        ("two_axes_and_twist_us", "two axes and twist, a frame", 10.0),
+        ("propagation_us", "normalization, a frame", 2.0),
+        ("rigid_fits_us", "rigid fits, a frame", 15.0),
+        ("calibration_s", "calibration of all joints", 0.5),
+    ],
+)
+def test_a_figure_is_met_up_to_what_is_asked_and_missed_beyond(figure, what, at):
+    for value, verdict in ((at, "met"), (1.01 * at, "**missed**")):
+        slower = {**SPEED, "paper": {**SPEED["paper"], figure: value}}
+        (row,) = (line for line in asked(slower) if line.startswith(f"| {what} |"))
+        kernels = row.split("|")[3]
+        assert kernels.strip().endswith(f", {verdict}")
+
+
+def test_stages_are_held_against_the_same_numbers():
+    n_frames = SPEED["n_frames"]
+    bodies = SPEED["layouts"]["bodies"]
+    seconds = dict.fromkeys(bodies["seconds"], 1e-6 * n_frames)  # 1 µs a frame
+    fast = {**bodies, "line_s": 1.6, "seconds": seconds}
+    rows = asked({**SPEED, "layouts": {**SPEED["layouts"], "bodies": fast}})
+    last = {r.split("|")[1].strip(): r.split("|")[5].strip() for r in rows if r.count("|") == 6}
+    assert last["two axes and twist, a frame"] == "1.00 µs, met"
+    assert last["normalization, a frame"] == "1.00 µs, met"
+    assert last["calibration of all joints"].endswith("s, met")
+    assert last["the whole line in memory"] == "1.60 s, **missed**"
+    twin = SPEED["paper"]["twin_two_axes_and_twist_us"]
+    assert last["two axes and twist, times as fast as the twin"].startswith(f"{twin:.3g}, met")
