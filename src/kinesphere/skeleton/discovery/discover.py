@@ -16,9 +16,10 @@ from kinesphere.skeleton.discovery.account import account_of, doubts_about
 from kinesphere.skeleton.discovery.continued import find_continued
 from kinesphere.skeleton.discovery.copies import find_copies, with_pieces, with_pieces_joined
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
-from kinesphere.skeleton.discovery.lives import find_lives, with_lives_joined
+from kinesphere.skeleton.discovery.lives import all_broken, find_lives, with_lives_joined
 from kinesphere.skeleton.discovery.names import settled
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
+from kinesphere.skeleton.discovery.reunited import left_over
 from kinesphere.skeleton.discovery.rigidity import trimmed_share
 from kinesphere.skeleton.discovery.root import from_the_root
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
@@ -78,7 +79,8 @@ def discover(
         root needs.
     """
     settings = settings or DiscoverySettings()
-    lives = find_lives(recording, settings.ghost_s)
+    limits = skeleton or SkeletonSettings()
+    lives = find_lives(recording, settings.ghost_s, limits)
     recording = with_lives_joined(recording, lives)
     worth = worth_grouping(recording.seen, recording.rate, settings.ghost_s)
     columns = np.flatnonzero(worth)
@@ -109,8 +111,11 @@ def discover(
         continued = {p: found_again.get(w, w) for p, w in continued.items()} | found_again
         markers = np.delete(with_pieces_joined(markers, later), [*later], axis=1)
         columns = np.delete(columns, [*later])
+    broken = all_broken(len(continued), recording.seen)
+    if broken:
+        lasting = ~left_over(np.isfinite(markers).all(axis=2))
+        markers, columns = np.ascontiguousarray(markers[:, lasting]), columns[lasting]
     points = np.ascontiguousarray(markers[spread_frames(markers, settings.sample_frames)])
-    limits = skeleton or SkeletonSettings()
     costs = JointCosts(points, unit)
     trim = trimmed_share(recording.n_frames / recording.rate, settings.ghost_s)
     partition = find_partition(points, settings, limits, costs, trim=trim)
