@@ -21,6 +21,10 @@ MANY = 9
 """Markers of either body that are compared: those that are seen most."""
 SURE = 4
 """So many markers alike need not be the whole of either body."""
+CLEARLY = 2.5
+"""Where markers are alike in another way, too, that one fits so many times worse at least."""
+TOO_MANY = 24
+"""Ways to be alike: of what is so regular nothing is told."""
 
 
 class Match(NamedTuple):
@@ -36,8 +40,8 @@ class Match(NamedTuple):
 def find_congruent(places: Places, bodies: Sequence[Members], seen: Mask) -> list[Match]:
     """Return which bodies are one limb, the surest first.
 
-    They have three markers at least, none of them seen at the same time, whose distances are alike
-    in one way only, and mirrored they are none. A body that fits as well on either of two that are
+    They have three markers at least, those of either never seen beside the same of the other, whose
+    distances are alike in one way far better than in others, and mirrored they are none. A body that fits as well on either of two that are
     seen at once is left alone.
 
     Parameters
@@ -49,14 +53,12 @@ def find_congruent(places: Places, bodies: Sequence[Members], seen: Mask) -> lis
         Frames that are looked at.
     """
     shapes = {b: _shape(places, b, members, seen) for b, members in enumerate(bodies)}
-    shown = {b: seen[:, members].any(axis=1) for b, members in shapes.items()}
+    shown = {b: seen[:, kept].sum(axis=1) >= POSED for b, kept in shapes.items()}
     there = [b for b, members in shapes.items() if len(members) >= POSED]
     found = []
     for a, b in combinations(there, 2):
-        if (shown[a] & shown[b]).sum() * 2 > min(shown[a].sum(), shown[b].sum()):
-            continue
         match = _match(places, (a, b), shapes[a], shapes[b])
-        if match and not any((seen[:, i] & seen[:, j]).any() for i, j in match.pairs):
+        if match and not any((seen[:, i] & seen[:, j]).any() for i, j in match.pairs if i != j):
             found.append(match)
     found.sort(key=lambda match: (-len(match.pairs), match.off))
     return [match for match in found if not _rivalled(match, found, shown)]
@@ -75,22 +77,31 @@ def _match(
     a, b = both
     tolerance = min(LOOSEST, TIGHT * float(np.hypot(places.usual[a], places.usual[b])))
     at, to = places.at[a, first], places.at[b, second]
-    best, ways = alike(_distances(at), _distances(to), tolerance)
-    whole = min(len(first), len(second))
-    if len(best) < POSED or ways > 1 or (len(best) < SURE and len(best) < whole):
+    ways = alike(_distances(at), _distances(to), tolerance)
+    pairs = len(ways[0]) if ways else 0
+    if pairs < POSED or (pairs < SURE and pairs < min(len(first), len(second))):
         return None
-    i, j = np.array(best).T
+    offs = np.array([_off(at, to, way) for way in ways])
+    best = int(offs.argmin())
+    if not offs[best] <= tolerance or (np.delete(offs, best) < CLEARLY * offs[best]).any():
+        return None  # mirrored, or as like in another way
+    i, j = np.array(ways[best]).T
+    return Match(
+        both, tuple(zip(first[i].tolist(), second[j].tolist(), strict=True)), float(offs[best])
+    )
+
+
+def _off(at: Array, to: Array, way: Sequence[tuple[int, int]]) -> float:
+    """Return by how much points do not fit on others, m rms; inf where they tell no pose."""
+    i, j = np.array(way).T
     fit = fit_rigid(at[i], to[j][None])
     off = into_frame(fit.rotations, fit.shifts, to[j][None])[0] - at[i]
     rms = float(np.sqrt((off**2).sum(axis=1).mean()))
-    if not rms <= tolerance:  # mirrored, it is another one
-        return None
-    pairs = tuple(zip(first[i].tolist(), second[j].tolist(), strict=True))
-    return Match(both, pairs, rms)
+    return rms if np.isfinite(rms) else np.inf
 
 
-def alike(a: Array, b: Array, tolerance: float) -> tuple[list[tuple[int, int]], int]:
-    """Return the most points of two sets with the same distances, and in how many ways so many are.
+def alike(a: Array, b: Array, tolerance: float) -> list[list[tuple[int, int]]]:
+    """Return the most points of two sets that have the same distances, in all ways there are.
 
     Parameters
     ----------
@@ -102,24 +113,25 @@ def alike(a: Array, b: Array, tolerance: float) -> tuple[list[tuple[int, int]], 
     i, j = (x.ravel() for x in np.indices((len(a), len(b))))
     fits = np.abs(a[i[:, None], i] - b[j[:, None], j]) <= tolerance
     fits &= (i[:, None] != i) & (j[:, None] != j)
-    best: list[int] = []
-    ways = 0
+    best: list[list[int]] = []
 
     def grow(chosen: list[int], left: list[int]) -> None:
-        nonlocal best, ways
+        nonlocal best
+        most = len(best[0]) if best else 0
         if not left:
-            if len(chosen) > len(best):
-                best, ways = chosen, 1
-            elif len(chosen) == len(best):
-                ways += 1
+            if len(chosen) > most:
+                best = [chosen]
+            elif len(chosen) == most:
+                best.append(chosen)
             return
         for k, node in enumerate(left):
-            if len(chosen) + len(left) - k < max(len(best), POSED):
+            most = len(best[0]) if best else 0
+            if len(best) > TOO_MANY or len(chosen) + len(left) - k < max(most, POSED):
                 return
             grow([*chosen, node], [other for other in left[k + 1 :] if fits[node, other]])
 
     grow([], list(range(len(i))))
-    return [(int(i[k]), int(j[k])) for k in best], ways
+    return [[(int(i[k]), int(j[k])) for k in way] for way in best]
 
 
 def _rivalled(match: Match, others: Sequence[Match], shown: dict[int, Mask]) -> bool:
@@ -129,10 +141,8 @@ def _rivalled(match: Match, others: Sequence[Match], shown: dict[int, Mask]) -> 
         if len(one) != 1 or len(other.pairs) < len(match.pairs):
             continue
         (mine,), (its,) = set(match.bodies) - one, set(other.bodies) - one
-        if (shown[mine] & shown[its]).any() and shown[mine].any():
-            beside = (shown[mine] & shown[its]).sum()
-            if 2 * beside > min(shown[mine].sum(), shown[its].sum()):
-                return True
+        if (shown[mine] & shown[its]).any():
+            return True
     return False
 
 

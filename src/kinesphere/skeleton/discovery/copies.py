@@ -87,6 +87,19 @@ def with_pieces_joined(markers: Array, pieces: dict[int, int]) -> Array:
     return joined
 
 
+def with_more(
+    model: TopologicalModel, limb_of: dict[str, str], in_file: Sequence[str]
+) -> TopologicalModel:
+    """Return the model with more markers on its limbs, label → limb; others stay away."""
+    segments = []
+    for segment in model.segments:
+        more = [label for label, limb in limb_of.items() if limb == segment.name]
+        markers = tuple(sorted((*segment.markers, *more), key=in_file.index))
+        segments.append(replace(segment, markers=markers))
+    required = tuple(label for segment in segments for label in segment.markers)
+    return replace(model, segments=tuple(segments), required=required)
+
+
 def with_pieces(
     model: TopologicalModel, whole_of: dict[str, str], in_file: Sequence[str]
 ) -> TopologicalModel:
@@ -101,10 +114,6 @@ def with_pieces(
     in_file
         All labels in their order.
     """
-    segments = []
-    for segment in model.segments:
-        pieces = [piece for piece, whole in whole_of.items() if whole in segment.markers]
-        markers = tuple(sorted((*segment.markers, *pieces), key=in_file.index))
-        segments.append(replace(segment, markers=markers))
-    required = tuple(label for segment in segments for label in segment.markers)
-    return replace(model, segments=tuple(segments), required=required)
+    limb_of = {label: segment.name for segment in model.segments for label in segment.markers}
+    more = {piece: limb_of[whole] for piece, whole in whole_of.items() if whole in limb_of}
+    return with_more(model, more, in_file)

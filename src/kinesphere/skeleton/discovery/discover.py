@@ -14,12 +14,17 @@ from kinesphere.errors import BadRecording
 from kinesphere.geometry.lifetimes import worth_grouping
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
 from kinesphere.skeleton.discovery.continued import find_continued
-from kinesphere.skeleton.discovery.copies import find_copies, with_pieces, with_pieces_joined
+from kinesphere.skeleton.discovery.copies import (
+    find_copies,
+    with_more,
+    with_pieces,
+    with_pieces_joined,
+)
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
 from kinesphere.skeleton.discovery.lives import all_broken, find_lives, with_lives_joined
 from kinesphere.skeleton.discovery.names import settled
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
-from kinesphere.skeleton.discovery.reunited import left_over
+from kinesphere.skeleton.discovery.reunited import left_over, limbs_of_rest
 from kinesphere.skeleton.discovery.rigidity import trimmed_share
 from kinesphere.skeleton.discovery.root import from_the_root
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
@@ -115,6 +120,8 @@ def discover(
     if broken:
         lasting = ~left_over(np.isfinite(markers).all(axis=2))
         markers, columns = np.ascontiguousarray(markers[:, lasting]), columns[lasting]
+        known = {*columns, *map(recording.labels.index, (*alike, *continued))}
+        rest = np.array([c for c in np.flatnonzero(recording.seen.any(axis=0)) if c not in known])
     points = np.ascontiguousarray(markers[spread_frames(markers, settings.sample_frames)])
     costs = JointCosts(points, unit)
     trim = trimmed_share(recording.n_frames / recording.rate, settings.ghost_s)
@@ -134,6 +141,16 @@ def discover(
     names = shaken(settled(names, tree), forest, counted)
     limb_of = {body: names.limbs[body] for body in tree}
     model = tree_model(partition, costs, limb_of, labels, recording.labels, times)
+    riders: dict[str, str] = {}
+    if broken:
+        riders = {
+            recording.labels[c]: limb_of[body]
+            for c, body in limbs_of_rest(
+                recording, columns, rest, partition.bodies, unit, limits
+            ).items()
+            if body in limb_of
+        }
+        model = with_more(model, riders, recording.labels)
     if continued:
         model = with_pieces(model, continued, recording.labels)
     near = settings.near_mm * 1e-3

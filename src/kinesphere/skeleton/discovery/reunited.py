@@ -1,9 +1,11 @@
 """Trajectories of limbs all of whose markers were lost: joined by what their bodies are like."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.data import Array, Mask
+from kinesphere.data import Array, Mask, Recording
 from kinesphere.errors import BadRecording, DegenerateMotion
 from kinesphere.geometry.even_frames import even_frames
 from kinesphere.skeleton.discovery.breaks import STATISTICS
@@ -11,7 +13,7 @@ from kinesphere.skeleton.discovery.chains import split_chains
 from kinesphere.skeleton.discovery.clustering import spectral
 from kinesphere.skeleton.discovery.congruent import find_congruent
 from kinesphere.skeleton.discovery.joint_costs import Members
-from kinesphere.skeleton.discovery.places import measure_places, riding, same_places
+from kinesphere.skeleton.discovery.places import SHOWN, measure_places, riding, same_places
 from kinesphere.skeleton.discovery.rigidity import measure_rigidity
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.discovery.steadiness import usual_wander
@@ -21,6 +23,8 @@ ROUNDS = 6
 """At most; after each, bodies are seen for longer and know more."""
 LOOKS = 3000
 """Frames that are looked at, at most."""
+LASTING = 0.4
+"""Share of what markers are usually seen in below which a track is left over."""
 
 
 def reunite(
@@ -68,6 +72,8 @@ def _one_marker(points: Array, limits: SkeletonSettings) -> list[list[int]]:
     places = measure_places(points, bodies, limits)
     same = same_places(places, riding(places), seen)
     links = [(group[0], m) for group in same for m in group[1:]]
+    bodies = [part for body in bodies for part in _seen_together(body, seen)]
+    places = measure_places(points, bodies, limits)
     links += [pair for match in find_congruent(places, bodies, seen) for pair in match.pairs]
     groups = {m: [m] for m in range(points.shape[1])}
     shown = {m: seen[:, m] for m in groups}
@@ -93,8 +99,20 @@ def _rigid(points: Array) -> list[Members]:
     return [np.flatnonzero(labels == body) for body in np.unique(labels)]
 
 
-LASTING = 0.5
-"""Share of what markers are usually seen in below which a track is left over."""
+def _seen_together(body: Members, seen: Mask) -> list[Members]:
+    """Return parts of a body each two of whose markers are seen together; some are in several."""
+    few = seen[:, body].astype(np.float32)
+    together = few.T @ few >= SHOWN
+    order = np.argsort(-few.sum(axis=0), kind="stable")
+    left, parts = list(order), []
+    while left:
+        kept = [left[0]]
+        for m in order:
+            if m != left[0] and together[m, kept].all():
+                kept.append(m)
+        parts.append(np.sort(body[kept]))
+        left = [m for m in left if m not in kept]
+    return parts
 
 
 def left_over(seen: Mask) -> NDArray[np.bool_]:
@@ -106,3 +124,34 @@ def left_over(seen: Mask) -> NDArray[np.bool_]:
     at_once = int(np.percentile(seen.sum(axis=1), 99))
     usual = often[min(at_once // 2, len(often) - 1)]
     return np.asarray(seen.sum(axis=0) < LASTING * usual)
+
+
+def limbs_of_rest(
+    recording: Recording,
+    columns: NDArray[np.intp],
+    rest: NDArray[np.intp],
+    bodies: Sequence[Members],
+    unit: float,
+    limits: SkeletonSettings,
+) -> dict[int, int]:
+    """Return the body that each trajectory of the rest rides on; what rides on none is not there.
+
+    Parameters
+    ----------
+    recording
+    columns
+        Of the recording, of the markers that bodies are of.
+    rest
+        Columns of those that were left over.
+    bodies
+        Of places in ``columns``.
+    unit
+        How many times larger the subject is than a person.
+    """
+    if not len(rest):
+        return {}
+    looks = max(2, round(recording.n_frames / recording.rate * STATISTICS))
+    frames = even_frames(recording.n_frames, min(4 * LOOKS, looks))
+    points = recording.markers[frames][:, np.concatenate([columns, rest])] / unit
+    on = riding(measure_places(points, bodies, limits))[len(columns) :]
+    return {int(m): int(b) for m, b in zip(rest, on, strict=True) if b >= 0}
