@@ -21,10 +21,10 @@ from kinesphere.skeleton.discovery.copies import (
     with_pieces_joined,
 )
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
+from kinesphere.skeleton.discovery.leftover import Leftover, left_over, settle
 from kinesphere.skeleton.discovery.lives import all_broken, find_lives, with_lives_joined
 from kinesphere.skeleton.discovery.names import settled
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
-from kinesphere.skeleton.discovery.reunited import left_over, limbs_of_rest
 from kinesphere.skeleton.discovery.rigidity import trimmed_share
 from kinesphere.skeleton.discovery.root import from_the_root
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
@@ -120,8 +120,6 @@ def discover(
     if broken:
         lasting = ~left_over(np.isfinite(markers).all(axis=2))
         markers, columns = np.ascontiguousarray(markers[:, lasting]), columns[lasting]
-        known = {*columns, *map(recording.labels.index, (*alike, *continued))}
-        rest = np.array([c for c in np.flatnonzero(recording.seen.any(axis=0)) if c not in known])
     points = np.ascontiguousarray(markers[spread_frames(markers, settings.sample_frames)])
     costs = JointCosts(points, unit)
     trim = trimmed_share(recording.n_frames / recording.rate, settings.ghost_s)
@@ -137,35 +135,32 @@ def discover(
     forest = from_the_root(partition, names.limbs, labels, limits, times)
     tree = next(t for t in forest.trees if tree[0] in t)
     partition = replace(partition, forest=forest)
+    rest = Leftover({}, ())
+    if broken:
+        others = [*map(recording.labels.index, (*alike, *continued))]
+        rest = settle(recording, columns, others, partition.bodies, unit, limits)
     counted = 1.0 if settings.bodies else partition.clustering.count_confidence
-    names = shaken(settled(names, tree), forest, counted)
+    names = shaken(settled(names, tree), forest, counted, rest.trust)
     limb_of = {body: names.limbs[body] for body in tree}
     model = tree_model(partition, costs, limb_of, labels, recording.labels, times)
-    riders: dict[str, str] = {}
-    if broken:
-        riders = {
-            recording.labels[c]: limb_of[body]
-            for c, body in limbs_of_rest(
-                recording, columns, rest, partition.bodies, unit, limits
-            ).items()
-            if body in limb_of
-        }
-        model = with_more(model, riders, recording.labels)
+    riders = {recording.labels[c]: limb_of[b] for c, b in rest.rides.items() if b in limb_of}
+    model = with_more(model, riders, recording.labels)
     if continued:
         model = with_pieces(model, continued, recording.labels)
     near = settings.near_mm * 1e-3
     ghosts = [
         label
         for column, label in enumerate(recording.labels)
-        if recording.seen[:, column].any() and not worth[column]
+        if recording.seen[:, column].any() and not worth[column] and label not in riders
     ]
     step = Step(
         name="discovery",
         settings=settings_as_json(settings),
         findings=account_of(partition, labels, ghosts, model, names, limb_of, near)
-        | {"copies": dict(alike), "pieces": dict(continued)},
+        | {"copies": dict(alike), "pieces": dict(continued), "riders": dict(riders)},
         warnings=_told_of_copies(alike)
         + _told_of_pieces(continued)
+        + rest.told()
         + doubts_about(
             partition,
             labels,

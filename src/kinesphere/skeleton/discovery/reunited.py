@@ -1,11 +1,8 @@
 """Trajectories of limbs all of whose markers were lost: joined by what their bodies are like."""
 
-from collections.abc import Sequence
-
 import numpy as np
-from numpy.typing import NDArray
 
-from kinesphere.data import Array, Mask, Recording
+from kinesphere.data import Array, Mask
 from kinesphere.errors import BadRecording, DegenerateMotion
 from kinesphere.geometry.even_frames import even_frames
 from kinesphere.skeleton.discovery.breaks import STATISTICS
@@ -23,8 +20,6 @@ ROUNDS = 6
 """At most; after each, bodies are seen for longer and know more."""
 LOOKS = 3000
 """Frames that are looked at, at most."""
-LASTING = 0.4
-"""Share of what markers are usually seen in below which a track is left over."""
 
 
 def reunite(
@@ -113,45 +108,3 @@ def _seen_together(body: Members, seen: Mask) -> list[Members]:
         parts.append(np.sort(body[kept]))
         left = [m for m in left if m not in kept]
     return parts
-
-
-def left_over(seen: Mask) -> NDArray[np.bool_]:
-    """Return which tracks are seen too little to tell bodies beside those of others, (n,).
-
-    As many markers as are seen at once are there; half of these tracks at least show what is usual.
-    """
-    often = np.sort(seen.sum(axis=0))[::-1]
-    at_once = int(np.percentile(seen.sum(axis=1), 99))
-    usual = often[min(at_once // 2, len(often) - 1)]
-    return np.asarray(seen.sum(axis=0) < LASTING * usual)
-
-
-def limbs_of_rest(
-    recording: Recording,
-    columns: NDArray[np.intp],
-    rest: NDArray[np.intp],
-    bodies: Sequence[Members],
-    unit: float,
-    limits: SkeletonSettings,
-) -> dict[int, int]:
-    """Return the body that each trajectory of the rest rides on; what rides on none is not there.
-
-    Parameters
-    ----------
-    recording
-    columns
-        Of the recording, of the markers that bodies are of.
-    rest
-        Columns of those that were left over.
-    bodies
-        Of places in ``columns``.
-    unit
-        How many times larger the subject is than a person.
-    """
-    if not len(rest):
-        return {}
-    looks = max(2, round(recording.n_frames / recording.rate * STATISTICS))
-    frames = even_frames(recording.n_frames, min(4 * LOOKS, looks))
-    points = recording.markers[frames][:, np.concatenate([columns, rest])] / unit
-    on = riding(measure_places(points, bodies, limits))[len(columns) :]
-    return {int(m): int(b) for m, b in zip(rest, on, strict=True) if b >= 0}
