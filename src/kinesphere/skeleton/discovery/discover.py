@@ -85,6 +85,7 @@ def discover(
     """
     settings = settings or DiscoverySettings()
     limits = skeleton or SkeletonSettings()
+    named = recording.labels
     lives = find_lives(recording, settings.ghost_s, limits)
     recording = with_lives_joined(recording, lives)
     worth = worth_grouping(recording.seen, recording.rate, settings.ghost_s)
@@ -107,7 +108,6 @@ def discover(
     if twice := [*copies, *pieces]:
         markers = np.delete(with_pieces_joined(markers, pieces), twice, axis=1)
         columns = np.delete(columns, twice)
-    named = recording.labels
     continued |= {named[p]: continued.get(named[w], named[w]) for p, w in lives.items()}
     if later := find_continued(markers, recording.rate, columns):
         found_again = {
@@ -137,7 +137,7 @@ def discover(
     partition = replace(partition, forest=forest)
     rest = Leftover({}, ())
     if broken:
-        others = [*map(recording.labels.index, (*alike, *continued))]
+        others = [recording.labels.index(m) for m in (*alike, *continued) if m in recording.labels]
         rest = settle(recording, columns, others, partition.bodies, unit, limits)
     counted = 1.0 if settings.bodies else partition.clustering.count_confidence
     names = shaken(settled(names, tree), forest, counted, rest.trust)
@@ -146,7 +146,7 @@ def discover(
     riders = {recording.labels[c]: limb_of[b] for c, b in rest.rides.items() if b in limb_of}
     model = with_more(model, riders, recording.labels)
     if continued:
-        model = with_pieces(model, continued, recording.labels)
+        model = with_pieces(model, continued, named)
     near = settings.near_mm * 1e-3
     ghosts = [
         label

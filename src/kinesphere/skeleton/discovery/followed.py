@@ -59,7 +59,7 @@ def follow(markers: Array, rate: float) -> tuple[list[list[int]], Array]:
         Hz.
     """
     tracks = [[m] for m in range(markers.shape[1])]
-    points = markers.copy()
+    points = markers
     for gap in GAPS:
         while True:
             links = _links(points, rate, gap)
@@ -72,17 +72,18 @@ def follow(markers: Array, rate: float) -> tuple[list[list[int]], Array]:
 def _joined(
     tracks: list[list[int]], points: Array, links: dict[int, int]
 ) -> tuple[list[list[int]], Array]:
-    points = points.copy()
     gone = set(links.values())
-    for a in links.keys() - gone:
+    kept = [m for m in range(len(tracks)) if m not in gone]
+    joined = np.ascontiguousarray(points[:, kept])
+    for at, a in enumerate(kept):
         b, whole = links.get(a), list(tracks[a])
         while b is not None:
             whole += tracks[b]
-            points[:, a] = np.where(np.isnan(points[:, a]), points[:, b], points[:, a])
+            lost = np.isnan(joined[:, at])
+            joined[:, at] = np.where(lost, points[:, b], joined[:, at])
             b = links.get(b)
         tracks[a] = whole
-    kept = [m for m in range(len(tracks)) if m not in gone]
-    return [tracks[m] for m in kept], np.ascontiguousarray(points[:, kept])
+    return [tracks[m] for m in kept], joined
 
 
 def _links(points: Array, rate: float, longest: float) -> dict[int, int]:

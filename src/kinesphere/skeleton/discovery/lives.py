@@ -6,7 +6,6 @@ import numpy as np
 
 from kinesphere.data import Mask, Recording
 from kinesphere.geometry.lifetimes import longest_runs
-from kinesphere.skeleton.discovery.copies import with_pieces_joined
 from kinesphere.skeleton.discovery.followed import SHORTEST, follow
 from kinesphere.skeleton.discovery.reunited import reunite
 from kinesphere.skeleton.discovery.size import PERSON, subject_size
@@ -61,9 +60,14 @@ def all_broken(n_joined: int, seen: Mask) -> bool:
 
 
 def with_lives_joined(recording: Recording, lives: dict[int, int]) -> Recording:
-    """Return the recording with each marker in one column, and nothing in those of its pieces."""
+    """Return the recording with each marker in one column; those of its pieces are gone."""
     if not lives:
         return recording
-    markers = with_pieces_joined(recording.markers, lives)
-    markers[:, [*lives]] = np.nan
-    return replace(recording, markers=markers)
+    kept = [m for m in range(recording.n_markers) if m not in lives]
+    at = {m: i for i, m in enumerate(kept)}
+    markers = recording.markers[:, kept]
+    for piece, whole in lives.items():
+        lost = np.isnan(markers[:, at[whole]])
+        markers[:, at[whole]] = np.where(lost, recording.markers[:, piece], markers[:, at[whole]])
+    labels = tuple(recording.labels[m] for m in kept)
+    return replace(recording, markers=markers, labels=labels, residuals=None, confidence=None)
