@@ -40,9 +40,9 @@ class Match(NamedTuple):
 def find_congruent(places: Places, bodies: Sequence[Members], seen: Mask) -> list[Match]:
     """Return which bodies are one limb, the surest first.
 
-    They have three markers at least, those of either never seen beside the same of the other, whose
-    distances are alike in one way far better than in others, and mirrored they are none. A body that fits as well on either of two that are
-    seen at once is left alone.
+    They have three markers at least, those of either never seen beside the same of the other. Their
+    distances are alike in one way that fits far better than others, and mirrored they are none. A
+    body that fits as well on either of two that are seen at once is left alone.
 
     Parameters
     ----------
@@ -103,6 +103,8 @@ def _off(at: Array, to: Array, way: Sequence[tuple[int, int]]) -> float:
 def alike(a: Array, b: Array, tolerance: float) -> list[list[tuple[int, int]]]:
     """Return the most points of two sets that have the same distances, in all ways there are.
 
+    Three at least; nothing otherwise.
+
     Parameters
     ----------
     a, b : (n, n), (m, m)
@@ -131,7 +133,7 @@ def alike(a: Array, b: Array, tolerance: float) -> list[list[tuple[int, int]]]:
             grow([*chosen, node], [other for other in left[k + 1 :] if fits[node, other]])
 
     grow([], list(range(len(i))))
-    return [[(int(i[k]), int(j[k])) for k in way] for way in best]
+    return [[(int(i[k]), int(j[k])) for k in way] for way in best if len(way) >= POSED]
 
 
 def _rivalled(match: Match, others: Sequence[Match], shown: dict[int, Mask]) -> bool:

@@ -12,6 +12,7 @@ from kinesphere.data import (
 )
 from kinesphere.errors import BadRecording
 from kinesphere.geometry.lifetimes import worth_grouping
+from kinesphere.geometry.vectors import is_seen
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
 from kinesphere.skeleton.discovery.continued import find_continued
 from kinesphere.skeleton.discovery.copies import (
@@ -118,7 +119,7 @@ def discover(
         columns = np.delete(columns, [*later])
     broken = all_broken(len(continued), recording.seen)
     if broken:
-        lasting = ~left_over(np.isfinite(markers).all(axis=2))
+        lasting = ~left_over(is_seen(markers))
         markers, columns = np.ascontiguousarray(markers[:, lasting]), columns[lasting]
     points = np.ascontiguousarray(markers[spread_frames(markers, settings.sample_frames)])
     costs = JointCosts(points, unit)

@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Mask
+from kinesphere.geometry.pose_errors import mean_pose_covariance, point_covariance
 from kinesphere.geometry.rigid import into_frame
+from kinesphere.geometry.vectors import is_seen
 from kinesphere.skeleton.averages import median_seen
 from kinesphere.skeleton.body import measure_shape, robust_rms
 from kinesphere.skeleton.discovery.joint_costs import Members
@@ -18,7 +20,7 @@ POSED = 3
 SHOWN = 12
 """Looks, a second of them, in which a piece must be seen beside a body's pose."""
 RIGID = 2.0
-"""A piece rides on a body where it strays at most so many times as much as the body's own do."""
+"""A piece rides on a body where it strays at most so many times as much as is due to noise."""
 CLEARLY = 0.6
 """And at most so much of what it does in any other body."""
 ALIKE = 0.006
@@ -37,6 +39,9 @@ class Places(NamedTuple):
     """(n_bodies, n) m, how far it strays from there; infinite where too little is seen."""
     usual: Array
     """(n_bodies,) m, median of what a body's own markers do; NaN without a pose."""
+    due: Array
+    """(n_bodies, n) m, what noise makes a marker there stray: the pose shakes the more, the farther
+    it is from the body's own."""
 
 
 def measure_places(points: Array, bodies: Sequence[Members], limits: SkeletonSettings) -> Places:
@@ -51,9 +56,9 @@ def measure_places(points: Array, bodies: Sequence[Members], limits: SkeletonSet
     limits
         What counts as an outlier and as a line.
     """
-    n, known = points.shape[1], np.isfinite(points).all(axis=2)
+    n, known = points.shape[1], is_seen(points)
     at, stray = np.full((len(bodies), n, 3), np.nan), np.full((len(bodies), n), np.inf)
-    usual = np.full(len(bodies), np.nan)
+    usual, due = np.full(len(bodies), np.nan), np.full((len(bodies), n), np.nan)
     for b, members in enumerate(bodies):
         shows = np.flatnonzero(known[:, members].sum(axis=1) >= POSED)
         if len(members) < POSED or len(shows) < SHOWN:
@@ -64,7 +69,7 @@ def measure_places(points: Array, bodies: Sequence[Members], limits: SkeletonSet
         )
         if measured is None:
             continue
-        pose = measured[2]
+        shape, noise, pose = measured
         posed = np.isfinite(pose.shifts).all(axis=1)
         often = known[shows][posed].sum(axis=0) >= SHOWN
         local = into_frame(pose.rotations[posed], pose.shifts[posed], seen[posed][:, often])
@@ -72,7 +77,13 @@ def measure_places(points: Array, bodies: Sequence[Members], limits: SkeletonSet
         stray[b, often] = robust_rms(np.linalg.norm(local - at[b, often], axis=2))
         own = stray[b, members]
         usual[b] = np.median(own[np.isfinite(own)]) if np.isfinite(own).any() else np.nan
-    return Places(at, stray, usual)
+        size = float(np.sqrt(np.mean(noise**2)))
+        shaky = mean_pose_covariance(
+            shape, np.full(len(shape), size), np.isfinite(seen[posed][:, members, 0])
+        )
+        shakes = point_covariance(shaky, at[b, often]).trace(axis1=1, axis2=2) / 3
+        due[b, often] = np.sqrt(shakes + size**2)
+    return Places(at, stray, usual, due)
 
 
 def riding(places: Places) -> NDArray[np.intp]:
@@ -84,14 +95,12 @@ def riding(places: Places) -> NDArray[np.intp]:
     least = places.stray[best, np.arange(n)]
     others = places.stray.copy()
     others[best, np.arange(n)] = np.inf
-    rides = np.isfinite(least) & (least <= RIGID * places.usual[best])
+    rides = np.isfinite(least) & (least <= RIGID * places.due[best, np.arange(n)])
     rides &= least <= CLEARLY * others.min(axis=0)
     return np.asarray(np.where(rides, best, -1))
 
 
-def same_places(
-    places: Places, on: NDArray[np.intp], seen: Mask
-) -> list[list[int]]:
+def same_places(places: Places, on: NDArray[np.intp], seen: Mask) -> list[list[int]]:
     """Return groups of pieces that are one marker: at one place of one body, never at once.
 
     Parameters

@@ -20,9 +20,7 @@ DOUBTFUL_COUNT = 0.3
 synthetic bodies and rigid plates, .27 to .73 on sparse markers of a person."""
 
 
-def shaken(
-    names: Names, forest: Forest, count_confidence: float, shown: float = 1.0
-) -> Names:
+def shaken(names: Names, forest: Forest, count_confidence: float, shown: float = 1.0) -> Names:
     """Return the names with what doubt in the bodies they stand on leaves of their confidence.
 
     A name is no surer than the tree it was read off: where the most doubtful edge of a named limb
