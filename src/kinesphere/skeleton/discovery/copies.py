@@ -17,6 +17,8 @@ BESIDE = 0.003
 are 6 mm thick and more; of the recordings at hand no two are nearer than 7 mm."""
 FRAMES = 100
 """Frames that are looked at, spread over the recording."""
+LISTED = 8
+"""Pieces that are named in the warning; the findings hold all."""
 TOGETHER = 0.9
 """Least share of the frames of the one seen less that show both. One marker in two pieces that
 overlap for some frames is no copy: either piece shows what the other does not."""
@@ -117,3 +119,20 @@ def with_pieces(
     limb_of = {label: segment.name for segment in model.segments for label in segment.markers}
     more = {piece: limb_of[whole] for piece, whole in whole_of.items() if whole in limb_of}
     return with_more(model, more, in_file)
+
+
+def told_of_copies(alike: dict[str, str]) -> tuple[str, ...]:
+    """Return what a person should be warned of."""
+    if not alike:
+        return ()
+    pairs = ", ".join(f"{copy} (as {kept})" for copy, kept in alike.items())
+    return (f"trajectories that are there twice are left out but for one: {pairs}",)
+
+
+def told_of_pieces(whole_of: dict[str, str]) -> tuple[str, ...]:
+    """Return what a person should be warned of."""
+    if not whole_of:
+        return ()
+    pairs = [f"{piece} ({whole})" for piece, whole in whole_of.items()]
+    listed = ", ".join(pairs if len(pairs) <= LISTED else [*pairs[:LISTED], "…"])
+    return (f"{len(pairs)} trajectories are taken for pieces of others: {listed}",)

@@ -17,6 +17,8 @@ from kinesphere.skeleton.discovery.account import account_of, doubts_about
 from kinesphere.skeleton.discovery.continued import find_continued
 from kinesphere.skeleton.discovery.copies import (
     find_copies,
+    told_of_copies,
+    told_of_pieces,
     with_more,
     with_pieces,
     with_pieces_joined,
@@ -38,9 +40,6 @@ from kinesphere.skeleton.discovery.twigs import without_twigs
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
-
-LISTED = 8
-"""Pieces that are named in the warning; the findings hold all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,8 +158,8 @@ def discover(
         settings=settings_as_json(settings),
         findings=account_of(partition, labels, ghosts, model, names, limb_of, near)
         | {"copies": dict(alike), "pieces": dict(continued), "riders": dict(riders)},
-        warnings=_told_of_copies(alike)
-        + _told_of_pieces(continued)
+        warnings=told_of_copies(alike)
+        + told_of_pieces(continued)
         + rest.told()
         + doubts_about(
             partition,
@@ -180,21 +179,6 @@ def _check_tree(partition: Partition, number: int) -> None:
         raise BadRecording(
             f"tree {number} was asked for; {len(partition.forest.trees)} move independently here"
         )
-
-
-def _told_of_copies(alike: dict[str, str]) -> tuple[str, ...]:
-    if not alike:
-        return ()
-    pairs = ", ".join(f"{copy} (as {kept})" for copy, kept in alike.items())
-    return (f"trajectories that are there twice are left out but for one: {pairs}",)
-
-
-def _told_of_pieces(whole_of: dict[str, str]) -> tuple[str, ...]:
-    if not whole_of:
-        return ()
-    pairs = [f"{piece} ({whole})" for piece, whole in whole_of.items()]
-    listed = ", ".join(pairs if len(pairs) <= LISTED else [*pairs[:LISTED], "…"])
-    return (f"{len(pairs)} trajectories are taken for pieces of others: {listed}",)
 
 
 def _faint(
