@@ -7,6 +7,9 @@ from kinesphere.geometry.rotations import hat
 
 Array = NDArray[np.float64]
 
+POSED = 3
+"""Points that tell a pose."""
+
 
 def pose_covariance(shape: Array, noise: Array) -> Array:
     """Return how uncertain a rigid fit's pose is, from the noise of its points.
@@ -29,6 +32,28 @@ def pose_covariance(shape: Array, noise: Array) -> Array:
     information = np.einsum("pki,p,pkj->ij", moved, 1 / noise**2, moved)
     covariance: Array = np.linalg.pinv(information, hermitian=True, rcond=1e-12)
     return covariance
+
+
+def mean_pose_covariance(shape: Array, noise: Array, seen: NDArray[np.bool_]) -> Array:
+    """Return how uncertain poses are on average that some of the points tell each, (6, 6).
+
+    Of four points in a square, three shake by more than four; of those nearly on a line, by far
+    more. Frames that tell no pose are left out; where none does, all points tell it.
+
+    Parameters
+    ----------
+    shape, noise
+        As `pose_covariance` takes them.
+    seen : (n_frames, n_points)
+    """
+    sets, times = np.unique(seen, axis=0, return_counts=True)
+    enough = (sets & np.isfinite(shape).all(axis=1)).sum(axis=1) >= POSED
+    sets, times = sets[enough], times[enough]
+    if not len(sets) or (len(sets) == 1 and sets.all()):
+        return pose_covariance(shape, noise)
+    each = np.array([pose_covariance(shape[one], noise[one]) for one in sets])
+    mean: Array = np.average(each, axis=0, weights=times)
+    return mean
 
 
 def point_covariance(pose: Array, points: Array) -> Array:

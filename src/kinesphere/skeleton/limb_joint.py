@@ -7,9 +7,10 @@ import numpy as np
 from kinesphere.data import Array, JointModel
 from kinesphere.geometry.centres import Turning, View, fit_centre, untold
 from kinesphere.geometry.joint_turns import joint_modes
-from kinesphere.geometry.pose_errors import pose_covariance
+from kinesphere.geometry.pose_errors import mean_pose_covariance, pose_covariance
 from kinesphere.geometry.rigid import RigidFit, into_frame
 from kinesphere.geometry.skin_noise import skin_noise
+from kinesphere.geometry.vectors import is_seen
 from kinesphere.skeleton.body import NOISE, Body, measure_shape
 from kinesphere.skeleton.landmarks import expected_centre, expected_off
 from kinesphere.skeleton.linked_joint import LinkedJoint
@@ -21,6 +22,9 @@ from kinesphere.skeleton.weighing import LOOSELY, UNLIKE, weighed
 STRAYS = 0.75
 """Share of `SkeletonSettings.undetermined_mm` that a limb's markers may stray in each direction on
 average: skin of 20 mm a radian leaves 3 mm, real trunks 11, two limbs taken for one 20."""
+
+LEAST = 0.01
+"""Share of the frames that a marker counts for at least."""
 
 
 class FoundJoint(NamedTuple):
@@ -63,11 +67,12 @@ def find_joint(
     noise = np.full(len(labels), usual) if solid is None else solid[1]
     fit = None if told is None else told.seen_from(parent, spread)
     if fit is None:
+        others = cloud(parent.labels, sample)
         view = View(
             into_frame(parent.rotations, parent.shifts, own),
             np.hypot(noise, NOISE),
-            parent.pose_covariance,
-            None if solid is None else _turning(solid, parent, own, cloud(parent.labels, sample)),
+            _pose_covariance(parent, own, others),
+            None if solid is None else _turning(solid, parent, own, others),
         )
         fit = fit_centre(
             view,
@@ -89,6 +94,15 @@ def find_joint(
     return FoundJoint(measured, own, noise, solid)
 
 
+def _pose_covariance(parent: Body, own: Array, others: Array) -> Array:
+    """Return how uncertain the parent's pose is where it sees something of the limb, (6, 6)."""
+    sees = is_seen(own).any(axis=1) & is_seen(parent.shifts)
+    seen = is_seen(others)[sees]
+    if parent.centre is not None:
+        seen = np.concatenate([seen, np.ones((len(seen), 1), dtype=np.bool_)], axis=1)
+    return mean_pose_covariance(parent.points, 1 / np.sqrt(parent.weights), seen)
+
+
 def _turning(
     solid: tuple[Array, Array, RigidFit], parent: Body, own: Array, others: Array
 ) -> Turning:
@@ -104,11 +118,14 @@ def _turning(
         theirs = skin_noise(
             into_frame(parent.rotations, parent.shifts, others)[known], parent.shape, modes[known]
         )
+        # skin that is hidden moves no pose: a marker counts for as many frames as show it
+        mine /= np.sqrt(is_seen(own)[known].mean(axis=0).clip(LEAST))
+        theirs /= np.sqrt(is_seen(others)[known].mean(axis=0).clip(LEAST))
         skin, seeing = pose_covariance(shape, mine), pose_covariance(parent.shape, theirs)
     return Turning(
         rotations,
         into_frame(parent.rotations, parent.shifts, pose.shifts[:, None])[:, 0],
-        pose_covariance(shape, np.hypot(noise, NOISE)),
+        mean_pose_covariance(shape, np.hypot(noise, NOISE), is_seen(own)[known]),
         float(np.hypot(np.sqrt(np.mean(noise**2)), NOISE)),
         skin,
         seeing,

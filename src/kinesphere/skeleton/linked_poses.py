@@ -84,7 +84,7 @@ def pose_linked(
     points = markers_of(group[1:], bodies, markers)
     whole = is_seen(points).all(axis=1) & np.isfinite(first.rotations).all(axis=(1, 2))
     at = np.flatnonzero(whole)
-    if len(known) < 2:
+    if len(known) < 2 or not len(at):
         return
     around = frames[known]
     ways = [

@@ -17,6 +17,8 @@ BESIDE = 0.003
 are 6 mm thick and more; of the recordings at hand no two are nearer than 7 mm."""
 FRAMES = 100
 """Frames that are looked at, spread over the recording."""
+LISTED = 8
+"""Pieces that are named in the warning; the findings hold all."""
 TOGETHER = 0.9
 """Least share of the frames of the one seen less that show both. One marker in two pieces that
 overlap for some frames is no copy: either piece shows what the other does not."""
@@ -87,6 +89,19 @@ def with_pieces_joined(markers: Array, pieces: dict[int, int]) -> Array:
     return joined
 
 
+def with_more(
+    model: TopologicalModel, limb_of: dict[str, str], in_file: Sequence[str]
+) -> TopologicalModel:
+    """Return the model with more markers on its limbs, label → limb; others stay away."""
+    segments = []
+    for segment in model.segments:
+        more = [label for label, limb in limb_of.items() if limb == segment.name]
+        markers = tuple(sorted((*segment.markers, *more), key=in_file.index))
+        segments.append(replace(segment, markers=markers))
+    required = tuple(label for segment in segments for label in segment.markers)
+    return replace(model, segments=tuple(segments), required=required)
+
+
 def with_pieces(
     model: TopologicalModel, whole_of: dict[str, str], in_file: Sequence[str]
 ) -> TopologicalModel:
@@ -101,10 +116,23 @@ def with_pieces(
     in_file
         All labels in their order.
     """
-    segments = []
-    for segment in model.segments:
-        pieces = [piece for piece, whole in whole_of.items() if whole in segment.markers]
-        markers = tuple(sorted((*segment.markers, *pieces), key=in_file.index))
-        segments.append(replace(segment, markers=markers))
-    required = tuple(label for segment in segments for label in segment.markers)
-    return replace(model, segments=tuple(segments), required=required)
+    limb_of = {label: segment.name for segment in model.segments for label in segment.markers}
+    more = {piece: limb_of[whole] for piece, whole in whole_of.items() if whole in limb_of}
+    return with_more(model, more, in_file)
+
+
+def told_of_copies(alike: dict[str, str]) -> tuple[str, ...]:
+    """Return what a person should be warned of."""
+    if not alike:
+        return ()
+    pairs = ", ".join(f"{copy} (as {kept})" for copy, kept in alike.items())
+    return (f"trajectories that are there twice are left out but for one: {pairs}",)
+
+
+def told_of_pieces(whole_of: dict[str, str]) -> tuple[str, ...]:
+    """Return what a person should be warned of."""
+    if not whole_of:
+        return ()
+    pairs = [f"{piece} ({whole})" for piece, whole in whole_of.items()]
+    listed = ", ".join(pairs if len(pairs) <= LISTED else [*pairs[:LISTED], "…"])
+    return (f"{len(pairs)} trajectories are taken for pieces of others: {listed}",)

@@ -12,11 +12,20 @@ from kinesphere.data import (
 )
 from kinesphere.errors import BadRecording
 from kinesphere.geometry.lifetimes import worth_grouping
+from kinesphere.geometry.vectors import is_seen
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
 from kinesphere.skeleton.discovery.continued import find_continued
-from kinesphere.skeleton.discovery.copies import find_copies, with_pieces, with_pieces_joined
+from kinesphere.skeleton.discovery.copies import (
+    find_copies,
+    told_of_copies,
+    told_of_pieces,
+    with_more,
+    with_pieces,
+    with_pieces_joined,
+)
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
-from kinesphere.skeleton.discovery.lives import find_lives, with_lives_joined
+from kinesphere.skeleton.discovery.leftover import Leftover, left_over, settle
+from kinesphere.skeleton.discovery.lives import all_broken, find_lives, with_lives_joined
 from kinesphere.skeleton.discovery.names import settled
 from kinesphere.skeleton.discovery.partition import Partition, find_partition
 from kinesphere.skeleton.discovery.rigidity import trimmed_share
@@ -31,9 +40,6 @@ from kinesphere.skeleton.discovery.twigs import without_twigs
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
-
-LISTED = 8
-"""Pieces that are named in the warning; the findings hold all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +84,9 @@ def discover(
         root needs.
     """
     settings = settings or DiscoverySettings()
-    lives = find_lives(recording, settings.ghost_s)
+    limits = skeleton or SkeletonSettings()
+    named = recording.labels
+    lives = find_lives(recording, settings.ghost_s, limits)
     recording = with_lives_joined(recording, lives)
     worth = worth_grouping(recording.seen, recording.rate, settings.ghost_s)
     columns = np.flatnonzero(worth)
@@ -100,7 +108,6 @@ def discover(
     if twice := [*copies, *pieces]:
         markers = np.delete(with_pieces_joined(markers, pieces), twice, axis=1)
         columns = np.delete(columns, twice)
-    named = recording.labels
     continued |= {named[p]: continued.get(named[w], named[w]) for p, w in lives.items()}
     if later := find_continued(markers, recording.rate, columns):
         found_again = {
@@ -109,8 +116,11 @@ def discover(
         continued = {p: found_again.get(w, w) for p, w in continued.items()} | found_again
         markers = np.delete(with_pieces_joined(markers, later), [*later], axis=1)
         columns = np.delete(columns, [*later])
+    broken = all_broken(len(continued), recording.seen)
+    if broken:
+        lasting = ~left_over(is_seen(markers))
+        markers, columns = np.ascontiguousarray(markers[:, lasting]), columns[lasting]
     points = np.ascontiguousarray(markers[spread_frames(markers, settings.sample_frames)])
-    limits = skeleton or SkeletonSettings()
     costs = JointCosts(points, unit)
     trim = trimmed_share(recording.n_frames / recording.rate, settings.ghost_s)
     partition = find_partition(points, settings, limits, costs, trim=trim)
@@ -125,25 +135,32 @@ def discover(
     forest = from_the_root(partition, names.limbs, labels, limits, times)
     tree = next(t for t in forest.trees if tree[0] in t)
     partition = replace(partition, forest=forest)
+    rest = Leftover({}, ())
+    if broken:
+        others = [recording.labels.index(m) for m in (*alike, *continued) if m in recording.labels]
+        rest = settle(recording, columns, others, partition.bodies, unit, limits)
     counted = 1.0 if settings.bodies else partition.clustering.count_confidence
-    names = shaken(settled(names, tree), forest, counted)
+    names = shaken(settled(names, tree), forest, counted, rest.trust)
     limb_of = {body: names.limbs[body] for body in tree}
     model = tree_model(partition, costs, limb_of, labels, recording.labels, times)
+    riders = {recording.labels[c]: limb_of[b] for c, b in rest.rides.items() if b in limb_of}
+    model = with_more(model, riders, recording.labels)
     if continued:
-        model = with_pieces(model, continued, recording.labels)
+        model = with_pieces(model, continued, named)
     near = settings.near_mm * 1e-3
     ghosts = [
         label
         for column, label in enumerate(recording.labels)
-        if recording.seen[:, column].any() and not worth[column]
+        if recording.seen[:, column].any() and not worth[column] and label not in riders
     ]
     step = Step(
         name="discovery",
         settings=settings_as_json(settings),
         findings=account_of(partition, labels, ghosts, model, names, limb_of, near)
-        | {"copies": dict(alike), "pieces": dict(continued)},
-        warnings=_told_of_copies(alike)
-        + _told_of_pieces(continued)
+        | {"copies": dict(alike), "pieces": dict(continued), "riders": dict(riders)},
+        warnings=told_of_copies(alike)
+        + told_of_pieces(continued)
+        + rest.told()
         + doubts_about(
             partition,
             labels,
@@ -162,21 +179,6 @@ def _check_tree(partition: Partition, number: int) -> None:
         raise BadRecording(
             f"tree {number} was asked for; {len(partition.forest.trees)} move independently here"
         )
-
-
-def _told_of_copies(alike: dict[str, str]) -> tuple[str, ...]:
-    if not alike:
-        return ()
-    pairs = ", ".join(f"{copy} (as {kept})" for copy, kept in alike.items())
-    return (f"trajectories that are there twice are left out but for one: {pairs}",)
-
-
-def _told_of_pieces(whole_of: dict[str, str]) -> tuple[str, ...]:
-    if not whole_of:
-        return ()
-    pairs = [f"{piece} ({whole})" for piece, whole in whole_of.items()]
-    listed = ", ".join(pairs if len(pairs) <= LISTED else [*pairs[:LISTED], "…"])
-    return (f"{len(pairs)} trajectories are taken for pieces of others: {listed}",)
 
 
 def _faint(

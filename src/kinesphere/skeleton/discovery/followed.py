@@ -27,6 +27,8 @@ SMOOTH = 0.3
 """s, longest gap over which motion alone may tell."""
 STRAYS = 0.015
 """m, and so far from where it would be, at most."""
+BLOCK = 1 << 20
+"""Distances that are looked at at a time: thousands of pieces need no more memory than hundreds."""
 SURE = 3.0
 """What could be meant else must be so many times farther than a marker strays from its way."""
 
@@ -59,7 +61,7 @@ def follow(markers: Array, rate: float) -> tuple[list[list[int]], Array]:
         Hz.
     """
     tracks = [[m] for m in range(markers.shape[1])]
-    points = markers.copy()
+    points = markers
     for gap in GAPS:
         while True:
             links = _links(points, rate, gap)
@@ -72,17 +74,18 @@ def follow(markers: Array, rate: float) -> tuple[list[list[int]], Array]:
 def _joined(
     tracks: list[list[int]], points: Array, links: dict[int, int]
 ) -> tuple[list[list[int]], Array]:
-    points = points.copy()
     gone = set(links.values())
-    for a in links.keys() - gone:
+    kept = [m for m in range(len(tracks)) if m not in gone]
+    joined = np.ascontiguousarray(points[:, kept])
+    for at, a in enumerate(kept):
         b, whole = links.get(a), list(tracks[a])
         while b is not None:
             whole += tracks[b]
-            points[:, a] = np.where(np.isnan(points[:, a]), points[:, b], points[:, a])
+            lost = np.isnan(joined[:, at])
+            joined[:, at] = np.where(lost, points[:, b], joined[:, at])
             b = links.get(b)
         tracks[a] = whole
-    kept = [m for m in range(len(tracks)) if m not in gone]
-    return [tracks[m] for m in kept], np.ascontiguousarray(points[:, kept])
+    return [tracks[m] for m in kept], joined
 
 
 def _links(points: Array, rate: float, longest: float) -> dict[int, int]:
@@ -105,17 +108,24 @@ def _links(points: Array, rate: float, longest: float) -> dict[int, int]:
     limit = min(STEADY * float(np.median(known)), STEADIEST) if len(known) else 0.0
     before = near_of(points, last, rate, -1, np.unique(a))
     after = near_of(points, first, rate, 1, np.unique(b))
-    steady = np.fmax(wander[a], wander[b])
-    steady[np.isnan(wander[a]) | np.isnan(wander[b])] = np.nan
-    change = np.abs(before[a] - after[b])
-    fellow = (steady <= limit) & np.isfinite(change)
-    agreeing = fellow & (change <= ALIKE)
-    agree = agreeing.sum(axis=1)
-    against = (fellow & (change > np.fmax(ALIKE, OFF * steady))).sum(axis=1)
-    closely = (fellow & (change <= np.fmin(ALIKE, steady))).sum(axis=1)
-    beside = np.where(agreeing, steady, np.where(np.isfinite(change), 1 + before[a], np.inf))
-    stray = stray_of(points, (a, last[a]), (b, first[b]), beside, rate)
-    room = np.fmin(least_of(before[a]), least_of(after[b]))
+    block = max(1, BLOCK // points.shape[1])
+    parts = []
+    for at in range(0, len(a), block):
+        pair = a[at : at + block], b[at : at + block]
+        steady = np.fmax(wander[pair[0]], wander[pair[1]])
+        steady[np.isnan(wander[pair[0]]) | np.isnan(wander[pair[1]])] = np.nan
+        change = np.abs(before[pair[0]] - after[pair[1]])
+        fellow = (steady <= limit) & np.isfinite(change)
+        agreeing = fellow & (change <= ALIKE)
+        against = (fellow & (change > np.fmax(ALIKE, OFF * steady))).sum(axis=1)
+        closely = (fellow & (change <= np.fmin(ALIKE, steady))).sum(axis=1)
+        far = np.where(np.isfinite(change), 1 + before[pair[0]], np.inf)
+        beside = np.where(agreeing, steady, far)
+        ends = (pair[0], last[pair[0]]), (pair[1], first[pair[1]])
+        stray = stray_of(points, *ends, beside, rate)
+        room = np.fmin(least_of(before[pair[0]]), least_of(after[pair[1]]))
+        parts.append((agreeing.sum(axis=1), against, closely, stray, room))
+    agree, against, closely, stray, room = (np.concatenate(x) for x in zip(*parts, strict=True))
     smooth = (wait[a, b] <= SMOOTH) & (stray <= np.fmin(room / SURE, STRAYS))
     rigid = (agree >= 3) | (np.where(wait[a, b] > LONG, closely, agree) >= 2)
     good = (rigid | smooth) & (against == 0)

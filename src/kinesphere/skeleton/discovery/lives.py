@@ -6,13 +6,19 @@ import numpy as np
 
 from kinesphere.data import Mask, Recording
 from kinesphere.geometry.lifetimes import longest_runs
-from kinesphere.skeleton.discovery.copies import with_pieces_joined
 from kinesphere.skeleton.discovery.followed import SHORTEST, follow
+from kinesphere.skeleton.discovery.reunited import reunite
 from kinesphere.skeleton.discovery.size import PERSON, subject_size
 from kinesphere.skeleton.discovery.spikes import without_spikes
+from kinesphere.skeleton.settings import SkeletonSettings
+
+BROKEN = 0.5
+"""Pieces that were joined for each marker that is seen at once, from which all are broken."""
 
 
-def find_lives(recording: Recording, ghost_s: float) -> dict[int, int]:
+def find_lives(
+    recording: Recording, ghost_s: float, limits: SkeletonSettings | None = None
+) -> dict[int, int]:
     """Return which columns go on in which other one: that of the same marker that is seen most.
 
     A marker's life of seconds is a small share of a long recording: joined, it is no reflection.
@@ -22,6 +28,8 @@ def find_lives(recording: Recording, ghost_s: float) -> dict[int, int]:
     recording
     ghost_s
         s; what is never around for so long is a reflection, and no piece.
+    limits
+        What counts as an outlier and as a line where limbs are compared.
     """
     seen: Mask = recording.seen
     whole = seen[:1].any(axis=0) & seen[-1:].any(axis=0)
@@ -34,7 +42,10 @@ def find_lives(recording: Recording, ghost_s: float) -> dict[int, int]:
     if broken[columns].sum() < 2:
         return {}
     markers = without_spikes(recording.markers[:, columns])
-    tracks, _ = follow(markers / (subject_size(markers) / PERSON), recording.rate)
+    markers /= subject_size(markers) / PERSON
+    tracks, joined = follow(markers, recording.rate)
+    if all_broken(len(columns) - len(tracks), recording.seen):
+        tracks = reunite(tracks, joined, recording.rate, limits or SkeletonSettings())
     often = seen.sum(axis=0)
     lives: dict[int, int] = {}
     for track in tracks:
@@ -43,10 +54,20 @@ def find_lives(recording: Recording, ghost_s: float) -> dict[int, int]:
     return dict(sorted(lives.items()))
 
 
+def all_broken(n_joined: int, seen: Mask) -> bool:
+    """Return whether so many pieces were joined that hardly a marker is whole."""
+    return bool(n_joined >= BROKEN * int(seen.sum(axis=1).max(initial=0)))
+
+
 def with_lives_joined(recording: Recording, lives: dict[int, int]) -> Recording:
-    """Return the recording with each marker in one column, and nothing in those of its pieces."""
+    """Return the recording with each marker in one column; those of its pieces are gone."""
     if not lives:
         return recording
-    markers = with_pieces_joined(recording.markers, lives)
-    markers[:, [*lives]] = np.nan
-    return replace(recording, markers=markers)
+    kept = [m for m in range(recording.n_markers) if m not in lives]
+    at = {m: i for i, m in enumerate(kept)}
+    markers = recording.markers[:, kept]
+    for piece, whole in lives.items():
+        lost = np.isnan(markers[:, at[whole]])
+        markers[:, at[whole]] = np.where(lost, recording.markers[:, piece], markers[:, at[whole]])
+    labels = tuple(recording.labels[m] for m in kept)
+    return replace(recording, markers=markers, labels=labels, residuals=None, confidence=None)

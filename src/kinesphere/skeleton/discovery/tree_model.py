@@ -22,7 +22,8 @@ and as much again."""
 POSED = 3
 """Markers of a limb at an end of the tree from which another's marker that is steady in it is at
 their joint: in two it keeps but two distances, and may be anywhere that moves little. Between two
-others such a limb has joints at both ends, and the marker aids its pose."""
+others such a limb has joints at both ends, and the marker aids its pose; doubtful joints do not
+count, for the limb may be an end."""
 
 
 def tree_model(
@@ -49,8 +50,8 @@ def tree_model(
         for body, limb in limb_of.items()
     )
     edges = [partition.forest.edge(body) for body in list(limb_of)[1:]]
-    degrees = {body: sum(body in (e.a, e.b) for e in edges) for body in limb_of}
-    unposed = {b for b in limb_of if len(partition.bodies[b]) < POSED and degrees[b] == 1}
+    sure = {body: sum(body in (e.a, e.b) and not e.doubtful for e in edges) for body in limb_of}
+    unposed = {b for b in limb_of if len(partition.bodies[b]) < POSED and sure[b] <= 1}
     joints = []
     for number, body in enumerate(list(limb_of)[1:], start=1):
         edge = partition.forest.edge(body)

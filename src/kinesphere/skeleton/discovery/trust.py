@@ -20,7 +20,7 @@ DOUBTFUL_COUNT = 0.3
 synthetic bodies and rigid plates, .27 to .73 on sparse markers of a person."""
 
 
-def shaken(names: Names, forest: Forest, count_confidence: float) -> Names:
+def shaken(names: Names, forest: Forest, count_confidence: float, shown: float = 1.0) -> Names:
     """Return the names with what doubt in the bodies they stand on leaves of their confidence.
 
     A name is no surer than the tree it was read off: where the most doubtful edge of a named limb
@@ -35,6 +35,8 @@ def shaken(names: Names, forest: Forest, count_confidence: float) -> Names:
         Of all bodies.
     count_confidence
         0…1 that there are so many bodies.
+    shown
+        0…1, what is left where trajectories are missing that may be limbs.
     """
     if not names.given:
         return names
@@ -42,8 +44,8 @@ def shaken(names: Names, forest: Forest, count_confidence: float) -> Names:
     edges = [edge.confidence for edge in forest.edges if named & {edge.a, edge.b}]
     tree = (1 + min(1.0, min(edges, default=1.0) / DOUBTFUL)) / 2
     count = (1 + min(1.0, count_confidence / DOUBTFUL_COUNT)) / 2
-    sure = names.confidence * tree * count
-    account = names.account | {"bodies_confidence": round(tree * count, 3)}
+    sure = names.confidence * tree * count * shown
+    account = names.account | {"bodies_confidence": round(tree * count * shown, 3)}
     doubt = names.doubt
     if sure < GIVEN:
         of_names = next(bodies for bodies in forest.trees if bodies[0] in names.limbs)
