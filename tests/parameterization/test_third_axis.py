@@ -457,6 +457,7 @@ def test_who_asks_for_three_keeps_what_was_measured(rng, name, strokes, told):
     assert fit.assumed == (True,) * (3 - told) + (False,) * told
     assert np.isnan(fit.uncertainty[: 3 - told]).all()
     assert np.isfinite(fit.uncertainty[3 - told :]).all()
+    assert fit.findings["n_axes_by_data"] == told
     assert off(fit.axes[2], FLEXION) < CLOSE
     assert off(fit.axes[0], fit.rest @ LIMB) < EXACT
     if told == 2:

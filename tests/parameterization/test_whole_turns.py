@@ -56,9 +56,9 @@ def test_a_hinge_is_found_and_rebuilt_however_often_it_turns(
     assert out_of_reach(joint, fit) == 0.0
 
 
-@pytest.mark.parametrize(("name", "proximal"), [("joint_01", FLAT), ("left_hip", FLAT)])
+@pytest.mark.parametrize("name", ["joint_01", "left_hip"])
 @pytest.mark.parametrize("spun", ["proximal", "distal"])
-def test_two_axes_one_of_which_goes_round(skin, rng, name, proximal, spun):
+def test_two_axes_one_of_which_goes_round(skin, rng, name, spun):
     """It turns on for half a minute, then swings about the other axis three times."""
     spin = np.where(T < 30, 2 * np.pi * 8 * T / 30, 0.0)
     swing = np.zeros(len(T))
@@ -66,7 +66,7 @@ def test_two_axes_one_of_which_goes_round(skin, rng, name, proximal, spun):
         during = (start <= T) & (start + 6 > T)
         swing[during] = np.deg2rad(40) * np.sin(np.pi * (T[during] - start))
     first, second = (swing, spin) if spun == "proximal" else (spin, swing)
-    inner, outer = (ACROSS, proximal) if spun == "proximal" else (proximal, ACROSS)
+    inner, outer = (ACROSS, FLAT) if spun == "proximal" else (FLAT, ACROSS)
     noise = Rotation.from_rotvec(skin(rng, len(T), RATE, 0.3))
     joint = view(noise * about(outer, second) * about(inner, first), name)
     fit = fit_axes(joint, SETTINGS)
@@ -79,10 +79,8 @@ def test_two_axes_one_of_which_goes_round(skin, rng, name, proximal, spun):
 def test_the_bodys_axes_rebuild_a_whole_turn_where_nobody_named_the_joint():
     """The mean orientation of a whole turn is arbitrary: it may be 50° from all of them."""
     settings = ParameterizationSettings(axes=AxesSettings(method="body", counts="joint_01=2"))
-    tilted = Rotation.from_rotvec([0.0, 0.0, 0.0]) * about(
-        np.array([0.0, 0.0, 1.0]), 2 * np.pi * 15 * T / 60
-    )
-    tilted = tilted * Rotation.align_vectors([[0.954, 0.0, 0.3]], [LIMB])[0]
+    upright = Rotation.align_vectors([[0.954, 0.0, 0.3]], [LIMB])[0]
+    tilted = about(np.array([0.0, 0.0, 1.0]), 2 * np.pi * 15 * T / 60) * upright
     joint = view(tilted, settings=settings)
     fit = fit_axes(joint, settings)
     assert fit.source == "body"

@@ -37,7 +37,9 @@ def fit_axes(view: JointView, settings: ParameterizationSettings) -> JointFit:
     hinge that does so gets an axis across both, as the elbow of ISB has between flexion and
     pronation (Wu et al. 2005, doi:10.1016/j.jbiomech.2004.05.042). Phases that are about an axis
     which moves the limb anyway tell no third (`_explained`). Where the user says how many
-    axes a joint has, it has those.
+    axes a joint has, it has those; of three, those that no movement tells are put beside the
+    others (`_with_limb_line`). One axis found where nobody named the joint gives way to two that
+    are sure, if the limb leaves its cone.
 
     Parameters
     ----------
@@ -89,10 +91,8 @@ def _with_limb_line(view: JointView, settings: ParameterizationSettings) -> Join
     line = TwistAxis(view.long_axis, (), np.nan, np.nan, np.nan)
     swings = (N_AXES[kind] if kind else observed_n_axes(view.samples)) or 2
     fits = [fit_joint(view, settings, 2)]
-    if swings == 1 and fits[0].n_told < 2:
-        fits.insert(
-            0, fit_joint(view, settings, 1)
-        )  # a hinge's axis is known better as its only one
+    if swings == 1 and fits[0].n_told < 2:  # a hinge's axis is known better as its only one
+        fits.insert(0, fit_joint(view, settings, 1))
     for fit in fits:
         if fit.source == "movement":
             return _joined(view, fit, line, settings)
@@ -188,7 +188,7 @@ def _joined(
     findings: Mapping[str, Json] = {
         **fit.findings,
         "n_axes": 3,
-        "n_axes_by_data": observed + 1 if isinstance(observed, int) else None,
+        "n_axes_by_data": observed + (not put) if isinstance(observed, int) else None,
         "axes_uncertainty_deg": or_null(np.rad2deg(uncertainty)),
         "axes_apart_deg": angles_between(axes),
         "phases_s": sorted([*swung, *spans], key=_start),
