@@ -22,6 +22,10 @@ UNSTEADY = 0.02
 """m, wander within a body from which it is doubted that it is one: people in soft clothes have up
 to 0.017, limbs of two markers each that were taken together 0.03 to 0.04."""
 
+HARDLY = 0.01
+"""m at a person's size, `Rigidity.most` up to which nobody moved: 0.001 to 0.004 of five people who
+stand for a static trial, 0.03 and more of everybody and everything that moves."""
+
 
 def account_of(
     partition: Partition,
@@ -119,6 +123,14 @@ def doubts_about(
         Joints of bodies that do not plainly move together.
     """
     doubts = []
+    most = partition.rigidity.most
+    if most < HARDLY and _count(partition) > 1:
+        doubts.append(
+            "the markers hardly move against each other (95 % of distances wander by less than "
+            f"{most * partition.unit * 1e3:.1f} mm, as on somebody who stands still): bodies, "
+            "joints and names are not to be trusted; record a motion of every joint, or give a "
+            "model"
+        )
     if len(partition.forest.trees) > 1:
         sizes = [sum(len(partition.bodies[b]) for b in tree) for tree in partition.forest.trees]
         doubts.append(

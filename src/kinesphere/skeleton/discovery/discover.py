@@ -32,6 +32,8 @@ from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
 
+FARTHEST = 1e9
+"""m, in whatever unit lengths really are: beyond, sums of squares lose what is nearer."""
 LISTED = 8
 """Pieces that are named in the warning; the findings hold all."""
 
@@ -72,12 +74,14 @@ def discover(
     Raises
     ------
     BadRecording
-        If there are too few markers or frames, or no such tree.
+        If there are too few markers or frames for the bodies that are asked for, no such tree, or
+        a marker where none can be.
     DegenerateMotion
         If the markers hardly move relative to each other, or no body has the three markers that a
         root needs.
     """
     settings = settings or DiscoverySettings()
+    _check_places(recording)
     lives = find_lives(recording, settings.ghost_s)
     recording = with_lives_joined(recording, lives)
     worth = worth_grouping(recording.seen, recording.rate, settings.ghost_s)
@@ -88,6 +92,7 @@ def discover(
             "grouped into bodies; at least 3 are needed. What is never around for "
             f"{settings.ghost_s:g} s counts as a reflection (discovery.ghost_s)"
         )
+    _check_bodies(len(columns), settings.bodies)
     columns = columns[from_the_middle(recording.markers[:, columns])]
     markers = without_spikes(recording.markers[:, columns])
     unit = subject_size(markers) / PERSON
@@ -155,6 +160,29 @@ def discover(
         ),
     )
     return Discovery(model, step, person)
+
+
+def _check_places(recording: Recording) -> None:
+    """Raise BadRecording where a marker is too far away for any sum over markers."""
+    far = (np.abs(recording.markers) > FARTHEST).any(axis=2)
+    if far.any():
+        frame, column = np.argwhere(far)[0]
+        away = np.abs(recording.markers[frame, column]).max()
+        raise BadRecording(
+            f"{recording.labels[column]} is {away:.3g} m from the origin in frame "
+            f"{recording.first_frame + frame}: no camera sees so far; leave such positions out "
+            "as not seen"
+        )
+
+
+def _check_bodies(n_markers: int, bodies: int | None) -> None:
+    """Raise BadRecording where so many bodies leave none the three markers that a root needs."""
+    if bodies is not None and bodies > n_markers - 2:
+        raise BadRecording(
+            f"discovery.bodies asks for {bodies} bodies of {n_markers} markers; at most "
+            f"{n_markers // 3} can have three each, {n_markers - 2} if one has three and every "
+            "other a single one"
+        )
 
 
 def _check_tree(partition: Partition, number: int) -> None:
