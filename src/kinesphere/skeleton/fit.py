@@ -22,6 +22,7 @@ from kinesphere.geometry.in_words import in_millimetres
 from kinesphere.skeleton.adoption import adopt, find_adoptions
 from kinesphere.skeleton.chain import measure_chain
 from kinesphere.skeleton.far_centres import far_centres
+from kinesphere.skeleton.filling import hidden_samples
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.other_size import larger, with_lengths
@@ -126,6 +127,8 @@ def fit_skeleton(
         for child, j in joints.items()
     }
     far = far_centres(joints, bodies)
+    limbs = tuple(describe_limb(bodies[limb], joints) for limb in tree.limbs)
+    hidden, of_samples = hidden_samples(recording, limbs, solved.flags)
     step = Step(
         name="skeleton",
         settings=settings_as_json(asked),
@@ -134,6 +137,8 @@ def fit_skeleton(
             "length_share": _number(share),
             "frames_measured_on": len(frames),
             "adopted_markers": dict(adopted),
+            "hidden_samples": hidden,
+            "hidden_share": _number(hidden / max(of_samples, 1)),
             "joints": {
                 joint.name: {
                     "observability": joint.observability,
@@ -153,7 +158,6 @@ def fit_skeleton(
         ),
         version=kinesphere.__version__,
     )
-    limbs = tuple(describe_limb(bodies[limb], joints) for limb in tree.limbs)
     history = (*recording.history, step)
     return Motion(
         skeleton=Skeleton(limbs, tuple(described[limb] for limb in tree.limbs[1:]), history),
