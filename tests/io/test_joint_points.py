@@ -123,7 +123,9 @@ def test_own_centres_are_left_out_by_what_the_file_says(solution, tmp_path):
     assert left.outputs == ()
     there = left.markers[:, left.columns(recording.labels)]
     assert_allclose(there, recording.markers, atol=STORED)
-    assert f"{len(solution.skeleton.joints)} points are joint centres" in left.history[-1].warnings[0]
+    assert (
+        f"{len(solution.skeleton.joints)} points are joint centres" in left.history[-1].warnings[0]
+    )
     assert without_own_points(left) is left
     assert without_own_points(recording) is recording
 

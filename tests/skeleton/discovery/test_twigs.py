@@ -75,7 +75,9 @@ def test_doubts_speak_of_limbs_by_what_they_are_called_now(with_twig, monkeypatc
     """The twig was limb_01; an arm that does not bend and a hand had the numbers after it."""
     points, bodies, called = with_twig
     arm, hand = called.index("left_upper_arm"), called.index("left_forearm")
-    called = ["limb_02" if b == arm else "limb_03" if b == hand else n for b, n in enumerate(called)]
+    called = [
+        "limb_02" if b == arm else "limb_03" if b == hand else n for b, n in enumerate(called)
+    ]
     partition = partition_of(points, bodies, monkeypatch)
     tree, names = told(partition, called, frozenset({arm, hand}))
     names = replace(names, straight={arm: "left"}, doubt="limb_02 is the whole left arm; …")

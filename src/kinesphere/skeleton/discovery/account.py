@@ -11,7 +11,7 @@ from kinesphere.skeleton.discovery.joint_doubts import doubts_of_joints, is_told
 from kinesphere.skeleton.discovery.names import Names
 from kinesphere.skeleton.discovery.partition import Partition
 from kinesphere.skeleton.discovery.steadiness import owners
-from kinesphere.skeleton.discovery.stillness import still_pairs
+from kinesphere.skeleton.discovery.stillness import still_pairs, told_of_stillness
 from kinesphere.skeleton.discovery.trust import DOUBTFUL_COUNT
 
 CURVE = 30
@@ -21,10 +21,6 @@ DOUBTFUL_MARKER = 0.5
 UNSTEADY = 0.02
 """m, wander within a body from which it is doubted that it is one: people in soft clothes have up
 to 0.017, limbs of two markers each that were taken together 0.03 to 0.04."""
-
-HARDLY = 0.01
-"""m at a person's size, `Rigidity.most` up to which nobody moved: 0.001 to 0.004 of five people who
-stand for a static trial, 0.03 and more of everybody and everything that moves."""
 
 
 def account_of(
@@ -123,14 +119,8 @@ def doubts_about(
         Joints of bodies that do not plainly move together.
     """
     doubts = []
-    most = partition.rigidity.most
-    if most < HARDLY and _count(partition) > 1:
-        doubts.append(
-            "the markers hardly move against each other (95 % of distances wander by less than "
-            f"{most * partition.unit * 1e3:.1f} mm, as on somebody who stands still): bodies, "
-            "joints and names are not to be trusted; record a motion of every joint, or give a "
-            "model"
-        )
+    if still := told_of_stillness(partition):
+        doubts.append(still)
     if len(partition.forest.trees) > 1:
         sizes = [sum(len(partition.bodies[b]) for b in tree) for tree in partition.forest.trees]
         doubts.append(
@@ -156,10 +146,10 @@ def doubts_about(
         )
     edges = [(j.name, _edge(partition, j.parent, j.child, limb_of)) for j in model.joints]
     apart = still_pairs(partition)
-    if still := [name for name, edge in edges if (edge.a, edge.b) in apart]:
+    if resting := [name for name, edge in edges if (edge.a, edge.b) in apart]:
         doubts.append(
             f"limbs move against each other no more than markers within them do at "
-            f"{', '.join(still)}: each two may be one body, and the number of bodies is in doubt"
+            f"{', '.join(resting)}: each two may be one body, and the number of bodies is in doubt"
         )
     doubts += doubts_of_joints(edges, names.confidence)
     if faint:

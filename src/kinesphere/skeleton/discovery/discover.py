@@ -13,6 +13,7 @@ from kinesphere.data import (
 from kinesphere.errors import BadRecording
 from kinesphere.geometry.lifetimes import worth_grouping
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
+from kinesphere.skeleton.discovery.asked import check_bodies, check_places, check_tree
 from kinesphere.skeleton.discovery.continued import find_continued
 from kinesphere.skeleton.discovery.copies import find_copies, with_pieces, with_pieces_joined
 from kinesphere.skeleton.discovery.joint_costs import JointCosts
@@ -32,8 +33,6 @@ from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
 
-FARTHEST = 1e9
-"""m, in whatever unit lengths really are: beyond, sums of squares lose what is nearer."""
 LISTED = 8
 """Pieces that are named in the warning; the findings hold all."""
 
@@ -81,7 +80,7 @@ def discover(
         root needs.
     """
     settings = settings or DiscoverySettings()
-    _check_places(recording)
+    check_places(recording)
     lives = find_lives(recording, settings.ghost_s)
     recording = with_lives_joined(recording, lives)
     worth = worth_grouping(recording.seen, recording.rate, settings.ghost_s)
@@ -92,7 +91,7 @@ def discover(
             "grouped into bodies; at least 3 are needed. What is never around for "
             f"{settings.ghost_s:g} s counts as a reflection (discovery.ghost_s)"
         )
-    _check_bodies(len(columns), settings.bodies)
+    check_bodies(len(columns), settings.bodies)
     columns = columns[from_the_middle(recording.markers[:, columns])]
     markers = without_spikes(recording.markers[:, columns])
     unit = subject_size(markers) / PERSON
@@ -120,7 +119,7 @@ def discover(
     trim = trimmed_share(recording.n_frames / recording.rate, settings.ghost_s)
     partition = find_partition(points, settings, limits, costs, trim=trim)
     labels = tuple(recording.labels[c] for c in columns)
-    _check_tree(partition, settings.tree)
+    check_tree(len(partition.forest.trees), settings.tree)
     partition, tree, names = named_tree(partition, costs, settings)
     if settings.bodies is None:
         partition, tree, names = without_twigs(partition, tree, names, settings, limits)
@@ -160,36 +159,6 @@ def discover(
         ),
     )
     return Discovery(model, step, person)
-
-
-def _check_places(recording: Recording) -> None:
-    """Raise BadRecording where a marker is too far away for any sum over markers."""
-    far = (np.abs(recording.markers) > FARTHEST).any(axis=2)
-    if far.any():
-        frame, column = np.argwhere(far)[0]
-        away = np.abs(recording.markers[frame, column]).max()
-        raise BadRecording(
-            f"{recording.labels[column]} is {away:.3g} m from the origin in frame "
-            f"{recording.first_frame + frame}: no camera sees so far; leave such positions out "
-            "as not seen"
-        )
-
-
-def _check_bodies(n_markers: int, bodies: int | None) -> None:
-    """Raise BadRecording where so many bodies leave none the three markers that a root needs."""
-    if bodies is not None and bodies > n_markers - 2:
-        raise BadRecording(
-            f"discovery.bodies asks for {bodies} bodies of {n_markers} markers; at most "
-            f"{n_markers // 3} can have three each, {n_markers - 2} if one has three and every "
-            "other a single one"
-        )
-
-
-def _check_tree(partition: Partition, number: int) -> None:
-    if number > len(partition.forest.trees):
-        raise BadRecording(
-            f"tree {number} was asked for; {len(partition.forest.trees)} move independently here"
-        )
 
 
 def _told_of_copies(alike: dict[str, str]) -> tuple[str, ...]:

@@ -11,6 +11,11 @@ from kinesphere.skeleton.discovery.likeliest import confidence_of, find_person
 from kinesphere.skeleton.discovery.person import Person
 from kinesphere.skeleton.discovery.proportions import kind_of_lone_arm
 from kinesphere.skeleton.discovery.sides import Sides, find_sides
+from kinesphere.skeleton.discovery.upper_half import (
+    NO_LEGS,
+    find_upper_half,
+    sides_of_upper_half,
+)
 
 SURE = 0.75
 """Least confidence of a reading for names to be given."""
@@ -64,8 +69,9 @@ class Names:
 def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> Names:
     """Name the bodies of a tree.
 
-    A person needs two legs of two bodies at least; left and right need feet, bent knees or bent
-    elbows. Without sides pelvis, trunk and head keep their names and the rest is numbered.
+    A person needs two legs of two bodies at least, or trunk, head and two such arms and little
+    else; left and right need feet, bent knees or bent elbows. Without sides pelvis, trunk and head
+    keep their names and the rest is numbered.
 
     Parameters
     ----------
@@ -77,11 +83,13 @@ def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> N
     """
     found = find_person(figure, tree)
     nobody = no_names(tree, NOBODY)
-    if found is None:
-        return nobody
+    if found is None or not found[0].convincing:
+        half = find_upper_half(figure, tree)
+        if half is None or not half[0].convincing:
+            return nobody if found is None else replace(nobody, cost=found[0].cost)
+        found = half
     person, confidence = found
-    if not person.convincing:
-        return replace(nobody, cost=person.cost)
+    dear = person.cost if person.legs else person.cost + NO_LEGS
     beside_animal = confidence_of(person.cost, animal)
     confidence = min(confidence, beside_animal)
     account: dict[str, Json] = {
@@ -92,29 +100,29 @@ def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> N
     }
     if beside_animal < SURE:
         account |= {"person": False}
-        return replace(no_names(tree, ANIMAL), account=account, cost=person.cost)
+        return replace(no_names(tree, ANIMAL), account=account, cost=dear)
     if confidence < SURE:
-        return replace(no_names(tree, _ambiguous(confidence)), account=account, cost=person.cost)
+        return replace(no_names(tree, _ambiguous(confidence)), account=account, cost=dear)
     refused, times = "", 1.0
     if not person.of_human_size:
         times = person.times_too_large
         refused = (
             "by its proportions the tree could be a person, but the size is not a person's "
-            f"(legs of someone of {person.stature:.4g} m): limbs are numbered; if it was a "
-            "person, the unit of length is wrong"
+            f"({'legs' if person.legs else 'arms'} of someone of {person.stature:.4g} m): limbs "
+            "are numbered; if it was a person, the unit of length is wrong"
         )
         if times != 1:
             refused += f", and joints are judged as if lengths were {1 / times:.4g} times as large"
     elif (sized := confidence_of(person.cost + person.size, person.nobody)) < confidence:
         confidence = sized
         refused = "" if sized >= SURE else _ambiguous(sized)
-    sides = find_sides(figure, person)
+    sides = find_sides(figure, person) if person.legs else sides_of_upper_half(figure, person)
     given = _torso(person)
     if sides is None:
         doubt = "nothing tells left from right; arms and legs are numbered"
         unnamed = frozenset(person.limbs.keys() - given.keys())
         return Names(
-            numbered(given, tree), confidence, account, doubt, person.cost, unnamed, refused, times
+            numbered(given, tree), confidence, account, doubt, dear, unnamed, refused, times
         )
     account |= {"sides_confidence": round(sides.confidence, 3)}
     account |= {f"sides_from_{name}": round(score, 2) for name, score in sides.scores.items()}
@@ -130,7 +138,7 @@ def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> N
     straight = {b: sided[b].partition("_")[0] for b, kind in lone.items() if kind == "whole"}
     unnamed = frozenset(person.limbs.keys() - given.keys())
     doubt = _doubt_about(limbs, straight)
-    return Names(limbs, sure, account, doubt, person.cost, unnamed, refused, times, straight)
+    return Names(limbs, sure, account, doubt, dear, unnamed, refused, times, straight)
 
 
 def renumbered(names: Names, tree: Sequence[int]) -> Names:
