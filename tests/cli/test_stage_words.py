@@ -34,7 +34,8 @@ def test_one_joint_and_several():
     told = words("parameterization", ["trunk", "head"], one)
     assert told == "1 axis, joints: 1 by their own movements; 2 limbs rebuilt to 3 mm rms"
     two = [{**JOINT, "n_axes": 2}, {**JOINT, "n_axes": 1, "residual_mm": np.nan}]
-    assert "2 joint centres: 2 hinge; " in words("skeleton", ["a", "b", "c"], two)
+    told = words("skeleton", ["a", "b", "c"], two)
+    assert told.endswith("2 joint centres: 2 hinge; apart 2 mm (median of 1), 2 mm (left_knee)")
     assert words("parameterization", ["a", "b", "c"], two).startswith("3 axes, joints: 2 by")
 
 
@@ -74,3 +75,13 @@ def test_a_stage_that_only_warns_points_below():
     stage = {"name": "checks", "settings": {}, "findings": {"found": []}, "warnings": ["a", "b"]}
     assert stage_in_words(stage, {}) == "2 warnings, see below"
     assert stage_in_words({**stage, "warnings": []}, {}) == ""
+
+
+def test_many_hidden_samples_are_told_with_what_fills_them():
+    def told(**found):
+        return words("skeleton", ["limb_01"], [], **found)
+
+    assert "5% of marker samples hidden" in told(hidden_share=0.05, fill_markers=False)
+    assert "--set skeleton.fill_markers=true" in told(hidden_share=0.05, fill_markers=False)
+    assert "hidden" not in told(hidden_share=0.05, fill_markers=True)
+    assert "hidden" not in told(hidden_share=0.01, fill_markers=False)

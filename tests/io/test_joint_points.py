@@ -8,6 +8,8 @@ from numpy.testing import assert_allclose
 
 from kinesphere.data import JointFlag, Output, Solution
 from kinesphere.io import read, read_c3d, read_solution, write, write_c3d
+from kinesphere.io.c3d.renew import DESCRIPTIONS
+from kinesphere.io.own_points import without_own_points
 
 STORED = 2e-4  # deg and mm; 32-bit floats
 
@@ -105,3 +107,41 @@ def test_what_was_added_does_not_become_the_recordings_own(solution, tmp_path):
     section = after.details["c3d"].layout.section
     assert section.group("KINESPHERE") is None
     assert section.texts("POINT", "ANGLES") == ()
+
+
+def test_own_centres_are_left_out_by_what_the_file_says(solution, tmp_path):
+    """A marker that merely bears a joint's name stays."""
+    write_c3d(solution.recording, tmp_path / "in.c3d")
+    recording = read(tmp_path / "in.c3d")
+    name = solution.skeleton.joint_names[0]
+    recording = replace(recording, labels=(name, *recording.labels[1:]))
+    write(replace(solution, recording=recording), tmp_path / "out")
+    found = read_c3d(tmp_path / "out" / "recording.c3d")
+    assert len(found.labels) == len(recording.labels) + len(solution.skeleton.joints)
+    left = without_own_points(found)
+    assert set(left.labels) == set(recording.labels)
+    assert left.outputs == ()
+    there = left.markers[:, left.columns(recording.labels)]
+    assert_allclose(there, recording.markers, atol=STORED)
+    assert (
+        f"{len(solution.skeleton.joints)} points are joint centres" in left.history[-1].warnings[0]
+    )
+    assert without_own_points(left) is left
+    assert without_own_points(recording) is recording
+
+
+def test_a_description_alone_is_no_computed_point(performance, tmp_path):
+    recording = performance.recording
+    told = {recording.labels[0]: "joint centre between trunk and head"}
+    write_c3d(replace(recording, details={DESCRIPTIONS: told}), tmp_path / "other.c3d")
+    found = read_c3d(tmp_path / "other.c3d")
+    assert without_own_points(found) is found
+
+
+def test_a_recording_solved_again_holds_no_joint_twice(solution, tmp_path):
+    write(solution, tmp_path / "out")
+    left = without_own_points(read_c3d(tmp_path / "out" / "recording.c3d"))
+    write(replace(solution, recording=left), tmp_path / "again")
+    once, twice = (read_c3d(tmp_path / name / "recording.c3d") for name in ("out", "again"))
+    assert twice.labels == once.labels
+    assert [o.label for o in twice.outputs] == [o.label for o in once.outputs]

@@ -1,5 +1,6 @@
 """Bodies, trees and names of real recordings whose labels were hidden."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -105,3 +106,55 @@ def test_names_of_half_a_recording_are_told_as_likely_only(recordings):
     assert found.step.findings["names_confidence"] is None
     assert set(found.step.findings["names_from"]["likely_names"].values()) >= {"trunk", "pelvis"}
     assert any("too unsure to be given" in warning for warning in found.step.warnings)
+
+
+HARDLY = "the markers hardly move against each other"
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "functional/anatomical_posture",
+        "functional/Test_func_anat",
+        "plugin-gait/PiG_Calibration-FlatFoot-Full",
+        "plugin-gait/pycgm_static",
+    ],
+)
+def test_who_stands_still_is_told_to_tell_nothing(recordings, name):
+    found = discover(read(recordings / f"{name}.c3d"))
+    assert any(HARDLY in doubt for doubt in found.step.warnings)
+
+
+@pytest.mark.parametrize("name", ["cmu41/06_01", "functional/Test_func_rankle", "cmu41/02_05"])
+def test_who_moves_is_not_told_so_and_doubts_speak_of_limbs_there_are(recordings, name):
+    found = discover(read(recordings / f"{name}.c3d"))
+    limbs = {segment.name for segment in found.model.segments}
+    for doubt in found.step.warnings:
+        assert HARDLY not in doubt
+        assert set(re.findall(r"limb_\d\d", doubt)) <= limbs
+
+
+def test_an_upper_half_is_named_where_the_whole_is(recordings):
+    """Legs' markers are taken away: everything above keeps its name."""
+    whole = read(recordings / "cmu41" / "135_02.c3d")
+    leg = re.compile(r".*[LR](THI|KNE|TIB|SHN|ANK|HEE|TOE|MT\d)$")
+    keep = [i for i, label in enumerate(whole.labels) if not leg.match(label)]
+    above = replace(
+        whole,
+        markers=whole.markers[:, keep],
+        labels=tuple(whole.labels[i] for i in keep),
+        residuals=None,
+    )
+    assert len(keep) == 27
+    named, beside = (
+        {
+            label: segment.name
+            for segment in discover(one).model.segments
+            for label in segment.markers
+        }
+        for one in (whole, above)
+    )
+    assert set(beside.values()) >= {"trunk", "head", "pelvis", "left_forearm", "right_upper_arm"}
+    assert not [limb for limb in beside.values() if limb.startswith("limb_")]
+    same = [named[label] == limb for label, limb in beside.items() if label in named]
+    assert sum(same) >= len(same) - 2  # markers of a shoulder are another limb's

@@ -74,6 +74,17 @@ def test_children_lie_below_their_parents(found_alone):
     assert all(line.y2 > line.y1 for line in find_bodies(found_alone).lines)
 
 
+def test_no_joint_is_drawn_through_a_name(found_alone):
+    bodies, skeleton = find_bodies(found_alone), found_alone.skeleton
+    nodes = {node.name.replace(" ", "_"): node for node in bodies.nodes}
+    letters = 4  # how far below its line a name reaches
+    for joint, line in zip(skeleton.joints, bodies.lines, strict=True):
+        parent, child = nodes[joint.parent], nodes[joint.child]
+        assert line.y1 > parent.y + parent.radius + 11 + letters
+        assert child.y - child.radius > line.y1
+        assert (line.x2, line.y2) == (child.x, child.y)
+
+
 def test_the_curve_spans_its_box_and_marks_what_was_found(found_alone):
     bodies = find_bodies(found_alone)
     points = [tuple(map(float, pair.split(","))) for pair in bodies.curve.split()]

@@ -11,6 +11,7 @@ from kinesphere.report.joint_table import chart_order, joint_rows
 from kinesphere.report.limb_table import limb_rows
 from kinesphere.report.step_cards import step_cards
 from kinesphere.report.tiles import tiles
+from kinesphere.report.wording import millimetres
 
 
 def with_joint(solution, index, **changes):
@@ -167,3 +168,12 @@ def test_tiles_sum_up(solution):
     residual = np.sqrt(np.nanmean(motion.residuals**2)) * 1e3
     value, unit = by_name["Limb fit"].value.split()
     assert (float(value), unit) == (pytest.approx(residual, rel=0.005), "mm")  # three figures
+
+
+def test_a_joint_that_cannot_come_apart_has_no_residual_and_no_part_in_the_median(solution):
+    told = [joint.residual for i, joint in enumerate(solution.skeleton.joints) if i != 3]
+    changed = with_joint(solution, 3, residual=float("nan"))
+    assert joint_rows(changed)[3].residual == "–"
+    tile = {tile.name: tile for tile in tiles(changed)}["Joint centres"]
+    assert tile.value == millimetres(float(np.median(told)))
+    assert tile.aside.startswith(f"median residual of {len(told)}; ")

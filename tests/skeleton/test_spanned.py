@@ -64,6 +64,10 @@ def test_hidden_markers_come_back_where_they_were(bodies, spoilt, motion):
     assert step.findings["filled_samples"] == len(columns) * 66
     assert step.findings["without_the_limbs_own_pose"] == len(columns) * 66
     assert step.findings["still_missing"] == 0
+    could = next(step.findings for step in motion.history if step.name == "skeleton")
+    assert could["hidden_samples"] == len(columns) * 66
+    n = sum(len(limb.markers) for limb in bodies.skeleton.limbs)
+    assert could["hidden_share"] == round(len(columns) * 66 / (n * spoilt.n_frames), 3)
     assert "rest on a pose" in step.warnings[0]
 
 
@@ -84,3 +88,5 @@ def test_the_end_of_a_chain_stays_unseen_for_long(bodies):
     motion = fit_skeleton(hidden(bodies.recording, foot, LONG), bodies.model)
     at = motion.skeleton.limb_names.index("right_foot")
     assert (motion.flags[LONG, at] == PoseFlag.UNSEEN).all()
+    step = next(step for step in motion.history if step.name == "skeleton")
+    assert step.findings["hidden_samples"] == 0  # nothing tells where they are

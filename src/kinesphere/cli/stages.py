@@ -9,6 +9,9 @@ import numpy as np
 from kinesphere.cli.surface_words import surface_in_words
 from kinesphere.report import counted, finding_in_words, in_words, number_in_words
 
+MANY_HIDDEN = 0.02
+"""Share of the samples of limbs' markers from which on it is said how to fill them."""
+
 
 def stage_in_words(stage: dict[str, Any], summary: dict[str, Any]) -> str:
     """Return what a stage found and how good it is.
@@ -126,7 +129,7 @@ def source_in_words(source: object) -> str:
     return "assumed" if source in (None, "assumed") else f"from the {source}"
 
 
-def _skeleton(_: dict[str, Any], summary: dict[str, Any]) -> str:
+def _skeleton(found: dict[str, Any], summary: dict[str, Any]) -> str:
     joints = summary["joint_findings"]
     kinds = Counter(joint["observability"] for joint in joints)
     told = ", ".join(f"{n} {kind}" for kind, n in kinds.most_common())
@@ -140,7 +143,15 @@ def _skeleton(_: dict[str, Any], summary: dict[str, Any]) -> str:
     if known:
         worst = max(known, key=lambda joint: joint["residual_mm"])
         median = float(np.median([joint["residual_mm"] for joint in known]))
-        text += f"; apart {_mm(median)} (median), {_mm(worst['residual_mm'])} ({worst['name']})"
+        of = f" of {len(known)}" if len(known) < len(joints) else ""
+        text += f"; apart {_mm(median)} (median{of}), "
+        text += f"{_mm(worst['residual_mm'])} ({worst['name']})"
+    hidden = found.get("hidden_share") or 0.0
+    if hidden >= MANY_HIDDEN and not found.get("fill_markers"):
+        text += (
+            f"; {hidden:.0%} of marker samples hidden and left so: "
+            "--set skeleton.fill_markers=true fills them from the limbs' poses"
+        )
     return text
 
 

@@ -60,7 +60,8 @@ class Joint:
     centre_in_child: Array
     """(3,) m."""
     residual: float
-    """m, rms over time of the distance between the centre seen from parent and from child."""
+    """m, rms over time of the distance between the centre seen from parent and from child; NaN
+    where no pose of the child is its markers' alone, so that nothing can come apart."""
     range_of_motion: float
     """rad, largest angle between two relative orientations (5–95 % of them)."""
     covariance: Array

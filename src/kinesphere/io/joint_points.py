@@ -9,6 +9,7 @@ from kinesphere.data.conventions import ANGLES, LIMBS, POSE, WRITTEN_BY
 from kinesphere.geometry.chain import three_told
 from kinesphere.io.c3d.renew import DESCRIPTIONS, NOTES, OURS
 from kinesphere.io.c3d.source import Source
+from kinesphere.io.own_points import CENTRE, TURNS
 
 _CENTRE, _ANGLES = "_centre", "_angles"
 
@@ -31,10 +32,10 @@ def with_joints(solution: Solution) -> Recording:
         label = _free(f"{joint.name}{_ANGLES}", _CENTRE, taken)
         taken.add(label)
         outputs.append(Output(label, "angle", _angles(solution, j) * scale, unit))
-        told[name] = f"joint centre between {joint.parent} and {joint.child}"
+        told[name] = CENTRE.format(joint.parent, joint.child)
         turns = [f"axis {k}" for k in range(1, joint.n_axes + 1)]
         turns += ["none"] * (2 - joint.n_axes) + ([] if joint.n_axes == 3 else ["twist"])
-        told[label] = f"angles of {joint.child} against {joint.parent}: {', '.join(turns)}"
+        told[label] = TURNS.format(joint.child, joint.parent, ", ".join(turns))
     centres = solution.motion.joint_centres()
     residuals = recording.residuals
     if residuals is not None:

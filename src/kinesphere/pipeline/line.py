@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from kinesphere.data import Recording, Solution, TopologicalModel
 from kinesphere.errors import BadRecording
+from kinesphere.io.own_points import without_own_points
 from kinesphere.labelling import match_labels
 from kinesphere.normalization import Facing, normalize
 from kinesphere.pipeline.choice import MOTION_ALONE, model_for, with_labels
@@ -36,7 +37,8 @@ def solve(
     Parameters
     ----------
     recording
-        As read: in the axes of its file.
+        As read: in the axes of its file. Joint centres that an earlier solution put into it are
+        left out.
     model
         Which marker sits on which limb; where no point bears one of its labels, they are given
         first. Or the name of a built-in one; None to choose the built-in one that the recording
@@ -69,6 +71,7 @@ def solve(
         If ``calibration_from`` is given although the body's axes are asked for.
     """
     settings = Settings() if settings is None else settings
+    recording = without_own_points(recording)
     if recording.n_frames == 0 or not recording.seen.any():
         raise BadRecording("the recording holds no marker position: nothing to solve")
     check_reuse(settings.parameterization, calibration_from)

@@ -14,7 +14,9 @@ GOLDEN_ANGLE = 137.508
 UNSURE = 0.5
 """Confidence below which a marker or body counts as unsure."""
 
-ROW, COLUMN, MARGIN = 58, 98, 34
+ROW, COLUMN, MARGIN = 78, 98, 34
+NAME = 16
+"""How far below a body's circle its name reaches; joints to what hangs from it begin there."""
 CURVE = (360, 190)
 
 
@@ -110,19 +112,19 @@ def find_bodies(solution: Solution) -> Bodies | None:
     colours = {name: colour_of(i) for i, name in enumerate(solution.skeleton.limb_names)}
     places = _places(solution)
     joints = found["joints_found"]
-    sizes = {limb.name: len(limb.markers) for limb in solution.skeleton.limbs}
+    radii = {limb.name: 6 + min(len(limb.markers), 8) for limb in solution.skeleton.limbs}
     return Bodies(
         n_bodies=found["bodies_found"],
         trees=found["trees"],
         count_confidence=number_in_words(found["count_confidence"]),
         names_confidence=number_in_words(found["names_confidence"]),
         nodes=tuple(
-            Node(name.replace("_", " "), colours[name], x, y, 6 + min(sizes[name], 8))
+            Node(name.replace("_", " "), colours[name], x, y, radii[name])
             for name, (x, y) in places.items()
         ),
         lines=tuple(
             Line(
-                *places[joint["parent"]],
+                *_below(places[joint["parent"]], radii[joint["parent"]] + NAME),
                 *places[joint["child"]],
                 _confidence(joint),
                 joint.get("doubtful", False),
@@ -140,6 +142,10 @@ def find_bodies(solution: Solution) -> Bodies | None:
         others=tuple(", ".join(markers) for markers in found["other_trees"]),
         **_curve(found["merge_curve_mm"], found["bodies_found"]),
     )
+
+
+def _below(place: tuple[float, float], by: float) -> tuple[float, float]:
+    return place[0], place[1] + by
 
 
 def _findings(solution: Solution) -> dict[str, Any] | None:

@@ -23,6 +23,7 @@ def tiles(solution: Solution) -> list[Tile]:
     joints = solution.skeleton.joints
     sure = sum(joint.observability in ("determined", "given") for joint in joints)
     centres = [joint.residual * 1e3 for joint in joints if np.isfinite(joint.residual)]
+    of = f" of {len(centres)}" if 0 < len(centres) < len(joints) else ""
     return [
         Tile(
             "Recording",
@@ -38,7 +39,7 @@ def tiles(solution: Solution) -> list[Tile]:
         Tile(
             "Joint centres",
             millimetres(float(np.median(centres)) / 1e3 if centres else float("nan")),
-            f"median residual; {sure} of {len(joints)} fixed by the motion",
+            f"median residual{of}; {sure} of {len(joints)} fixed by the motion",
         ),
         Tile(
             "Rebuilt",

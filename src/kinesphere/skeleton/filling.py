@@ -1,14 +1,34 @@
 """Hidden markers, put where their limb's pose says they are."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from kinesphere import __version__
-from kinesphere.data import Motion, PoseFlag, Recording, Step
+from kinesphere.data import Codes, Limb, Motion, PoseFlag, Recording, Step
 
 OWN = (PoseFlag.MEASURED, PoseFlag.JOINT_AIDED)
 """Poses that what is seen of the limb determines."""
+
+
+def hidden_samples(recording: Recording, limbs: Sequence[Limb], flags: Codes) -> tuple[int, int]:
+    """Return how many samples of limbs' markers are hidden while the limb has a pose, and of all.
+
+    Parameters
+    ----------
+    recording
+        The one that limbs were posed on.
+    limbs
+    flags : (n_frames, n_limbs)
+        PoseFlag of each limb's pose.
+    """
+    hidden = 0
+    for limb, column in zip(limbs, flags.T, strict=True):
+        place = np.isfinite(limb.marker_positions).all(axis=1)
+        seen = recording.seen[:, recording.columns(limb.markers)]
+        hidden += int((~seen & place & (column != PoseFlag.UNSEEN)[:, None]).sum())
+    return hidden, recording.n_frames * sum(len(limb.markers) for limb in limbs)
 
 
 def fill_markers(recording: Recording, motion: Motion) -> Recording:

@@ -18,6 +18,7 @@ from kinesphere.skeleton.adoption import adopt, find_adoptions
 from kinesphere.skeleton.chain import measure_chain
 from kinesphere.skeleton.doubts import open_centres, poor_fits
 from kinesphere.skeleton.far_centres import far_centres
+from kinesphere.skeleton.filling import hidden_samples
 from kinesphere.skeleton.other_size import larger, with_lengths
 from kinesphere.skeleton.report import describe_joint, describe_limb
 from kinesphere.skeleton.sampling import spread_over_joints
@@ -112,6 +113,8 @@ def fit_skeleton(
         for child, j in joints.items()
     }
     far = far_centres(joints, bodies)
+    limbs = tuple(describe_limb(bodies[limb], joints) for limb in tree.limbs)
+    hidden, of_samples = hidden_samples(recording, limbs, solved.flags)
     step = Step(
         name="skeleton",
         settings=settings_as_json(asked),
@@ -120,6 +123,8 @@ def fit_skeleton(
             "length_share": _number(share),
             "frames_measured_on": len(frames),
             "adopted_markers": dict(adopted),
+            "hidden_samples": hidden,
+            "hidden_share": _number(hidden / max(of_samples, 1)),
             "joints": {
                 joint.name: {
                     "observability": joint.observability,
@@ -139,7 +144,6 @@ def fit_skeleton(
         ),
         version=kinesphere.__version__,
     )
-    limbs = tuple(describe_limb(bodies[limb], joints) for limb in tree.limbs)
     history = (*recording.history, step)
     return Motion(
         skeleton=Skeleton(limbs, tuple(described[limb] for limb in tree.limbs[1:]), history),

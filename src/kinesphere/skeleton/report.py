@@ -25,11 +25,16 @@ SAID = 0.5e-3
 def describe_joint(
     measured: MeasuredJoint, parent: Poses, child: Poses, body: Body, settings: SkeletonSettings
 ) -> Joint:
-    """Return the joint with its residual, range of motion, covariance and observability."""
+    """Return the joint with its residual, range of motion, covariance and observability.
+
+    The residual is that of the frames in which the child's markers alone tell its pose: elsewhere
+    the pose is put at the joint, and coming apart by nothing says nothing. NaN where that is so
+    in all frames, as it is of limbs of two markers.
+    """
     fit, model = measured.fit, measured.model
     assert body.centre is not None
     gap = lengths(parent.carry(fit.centre) - child.carry(body.centre))
-    known = gap[np.isfinite(gap)]
+    known = gap[np.isfinite(gap) & (child.flags == PoseFlag.MEASURED)]
     moved = range_of_motion(_relative(parent, child))
     verdict, note = verdict_on(measured, moved, settings)
     return Joint(

@@ -1,5 +1,6 @@
 """A model from motion alone, against the actor it came from and laws it must keep."""
 
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -321,6 +322,41 @@ def test_two_markers_and_bodies_of_two_are_refused(recorded, rng):
     ends[:, 3] = ends[:, 2] + 0.3 * stick / np.linalg.norm(stick, axis=1, keepdims=True)
     with pytest.raises(DegenerateMotion, match="three markers off a line that a root needs"):
         discover(Recording(ends, tuple("abcd"), 50.0))
+
+
+@pytest.mark.parametrize("more", [-1, 0, 448])
+def test_more_bodies_than_markers_allow_are_refused_before_any_work(recorded, monkeypatch, more):
+    def never(*_):
+        raise AssertionError
+
+    module = sys.modules["kinesphere.skeleton.discovery.discover"]
+    monkeypatch.setattr(module, "find_copies", never)
+    n = recorded.n_markers
+    told = f"asks for {n + more} bodies of {n} markers; at most {n // 3} can have three each"
+    with pytest.raises(BadRecording, match=told):
+        discover(recorded, DiscoverySettings(bodies=n + more))
+    with pytest.raises(AssertionError):  # so many can be
+        discover(recorded, DiscoverySettings(bodies=n - 2))
+
+
+@pytest.mark.parametrize("where", [2e9, -1e300])
+def test_a_marker_where_none_can_be_is_refused(recorded, where):
+    markers = np.array(recorded.markers)
+    markers[5, 3, 1] = where
+    told = rf"\*3 is {abs(where):.3g} m from the origin in frame {recorded.first_frame + 5}: "
+    with pytest.raises(BadRecording, match=told.replace("+", r"\+")):
+        discover(replace(recorded, markers=markers))
+
+
+def test_of_somebody_who_hardly_moves_nothing_is_to_be_trusted(recorded, rng, found):
+    """A person sways: every limb by a millimetre or two, more than any marker on its limb."""
+    swaying = np.array(recorded.markers)
+    still = swaying[:1] + rng.normal(scale=0.0001, size=swaying.shape)
+    still += 0.03 * (swaying - swaying[:1])
+    told = [w for w in discover(replace(recorded, markers=still)).step.warnings if "hardly" in w]
+    assert "the markers hardly move against each other" in told[0]
+    assert "bodies, joints and names are not to be trusted" in told[0]
+    assert not [w for w in found.step.warnings if "hardly move against" in w]
 
 
 def test_bodies_that_stay_where_they_are_are_joined_with_doubt(rng):

@@ -168,11 +168,11 @@ def test_what_is_farther_from_the_hips_as_heads_are_is_rather_the_head(other, ra
     assert _rather_the_head(figure, person, ("joint", 0, 1), 1.0) is rather
 
 
-def test_another_head_contradicts():
-    from kinesphere.skeleton.discovery.likeliest import _contradicts
+def test_another_headcontradicts():
+    from kinesphere.skeleton.discovery.likeliest import contradicts
 
     legs = ((1, 2), (3, 4))
     one, other, none = (Person(0, None, legs, (), head) for head in (11, 12, None))
-    assert _contradicts(other, one)
-    assert not _contradicts(none, one)
-    assert not _contradicts(one, one)
+    assert contradicts(other, one)
+    assert not contradicts(none, one)
+    assert not contradicts(one, one)

@@ -1,5 +1,7 @@
 """Markers beside a person's torso that the clustering took for a body."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -57,13 +59,34 @@ def test_what_is_no_limb_goes_back_to_the_trunk(with_twig, monkeypatch):
     points, bodies, called = with_twig
     partition = partition_of(points, bodies, monkeypatch)
     tree, names = told(partition, called)
+    doubt = "limb_01 could not be named though the rest is a person: a part of an arm"
+    names = replace(names, doubt=doubt)
     found, kept, renamed = without_twigs(partition, tree, names, DiscoverySettings(), LIMITS)
     assert set(found.bodies[0]) == {*bodies[0], *bodies[1]}
     assert len(found.bodies[1]) == 0
     assert 1 not in kept
     assert len(kept) == len(tree) - 1
     assert set(renamed.limbs.values()) == set(called) - {"limb_01"}
+    assert renamed.doubt == ""
     assert {edge.b for edge in found.forest.edges} == set(kept) - {found.forest.trees[0][0]}
+
+
+def test_doubts_speak_of_limbs_by_what_they_are_called_now(with_twig, monkeypatch):
+    """The twig was limb_01; an arm that does not bend and a hand had the numbers after it."""
+    points, bodies, called = with_twig
+    arm, hand = called.index("left_upper_arm"), called.index("left_forearm")
+    called = [
+        "limb_02" if b == arm else "limb_03" if b == hand else n for b, n in enumerate(called)
+    ]
+    partition = partition_of(points, bodies, monkeypatch)
+    tree, names = told(partition, called, frozenset({arm, hand}))
+    names = replace(names, straight={arm: "left"}, doubt="limb_02 is the whole left arm; …")
+    _, kept, renamed = without_twigs(partition, tree, names, DiscoverySettings(), LIMITS)
+    assert 1 not in kept
+    numbers = {renamed.limbs[arm], renamed.limbs[hand]}
+    assert numbers == {"limb_01", "limb_02"}
+    assert f"{renamed.limbs[arm]} is the whole left arm: no bend shows" in renamed.doubt
+    assert f"; {renamed.limbs[hand]} could not be named though the rest" in renamed.doubt
 
 
 @pytest.mark.parametrize("name", ["head", "left_upper_arm"])

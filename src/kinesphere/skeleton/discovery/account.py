@@ -11,7 +11,7 @@ from kinesphere.skeleton.discovery.joint_doubts import doubts_of_joints, is_told
 from kinesphere.skeleton.discovery.names import Names
 from kinesphere.skeleton.discovery.partition import Partition
 from kinesphere.skeleton.discovery.steadiness import owners
-from kinesphere.skeleton.discovery.stillness import still_pairs
+from kinesphere.skeleton.discovery.stillness import still_pairs, told_of_stillness
 from kinesphere.skeleton.discovery.trust import DOUBTFUL_COUNT
 
 CURVE = 30
@@ -119,6 +119,8 @@ def doubts_about(
         Joints of bodies that do not plainly move together.
     """
     doubts = []
+    if still := told_of_stillness(partition):
+        doubts.append(still)
     if len(partition.forest.trees) > 1:
         sizes = [sum(len(partition.bodies[b]) for b in tree) for tree in partition.forest.trees]
         doubts.append(
@@ -144,10 +146,10 @@ def doubts_about(
         )
     edges = [(j.name, _edge(partition, j.parent, j.child, limb_of)) for j in model.joints]
     apart = still_pairs(partition)
-    if still := [name for name, edge in edges if (edge.a, edge.b) in apart]:
+    if resting := [name for name, edge in edges if (edge.a, edge.b) in apart]:
         doubts.append(
             f"limbs move against each other no more than markers within them do at "
-            f"{', '.join(still)}: each two may be one body, and the number of bodies is in doubt"
+            f"{', '.join(resting)}: each two may be one body, and the number of bodies is in doubt"
         )
     doubts += doubts_of_joints(edges, names.confidence)
     if faint:

@@ -14,6 +14,7 @@ from kinesphere.errors import BadRecording
 from kinesphere.geometry.lifetimes import worth_grouping
 from kinesphere.geometry.vectors import is_seen
 from kinesphere.skeleton.discovery.account import account_of, doubts_about
+from kinesphere.skeleton.discovery.asked import check_bodies, check_places, check_tree
 from kinesphere.skeleton.discovery.continued import find_continued
 from kinesphere.skeleton.discovery.copies import (
     find_copies,
@@ -78,12 +79,14 @@ def discover(
     Raises
     ------
     BadRecording
-        If there are too few markers or frames, or no such tree.
+        If there are too few markers or frames for the bodies that are asked for, no such tree, or
+        a marker where none can be.
     DegenerateMotion
         If the markers hardly move relative to each other, or no body has the three markers that a
         root needs.
     """
     settings = settings or DiscoverySettings()
+    check_places(recording)
     limits = skeleton or SkeletonSettings()
     named = recording.labels
     lives = find_lives(recording, settings.ghost_s, limits)
@@ -96,6 +99,7 @@ def discover(
             "grouped into bodies; at least 3 are needed. What is never around for "
             f"{settings.ghost_s:g} s counts as a reflection (discovery.ghost_s)"
         )
+    check_bodies(len(columns), settings.bodies)
     columns = columns[from_the_middle(recording.markers[:, columns])]
     markers = without_spikes(recording.markers[:, columns])
     unit = subject_size(markers) / PERSON
@@ -125,7 +129,7 @@ def discover(
     trim = trimmed_share(recording.n_frames / recording.rate, settings.ghost_s)
     partition = find_partition(points, settings, limits, costs, trim=trim)
     labels = tuple(recording.labels[c] for c in columns)
-    _check_tree(partition, settings.tree)
+    check_tree(len(partition.forest.trees), settings.tree)
     partition, tree, names = named_tree(partition, costs, settings)
     if settings.bodies is None:
         partition, tree, names = without_twigs(partition, tree, names, settings, limits)
@@ -172,13 +176,6 @@ def discover(
         ),
     )
     return Discovery(model, step, person)
-
-
-def _check_tree(partition: Partition, number: int) -> None:
-    if number > len(partition.forest.trees):
-        raise BadRecording(
-            f"tree {number} was asked for; {len(partition.forest.trees)} move independently here"
-        )
 
 
 def _faint(

@@ -33,7 +33,7 @@ def find_person(figure: Figure, tree: Sequence[int]) -> tuple[Person, float] | N
         return None
     costed.sort(key=lambda person: person.cost)
     best = costed[0]
-    rival = next((p.cost for p in costed[1:] if _contradicts(p, best)), np.inf)
+    rival = next((p.cost for p in costed[1:] if contradicts(p, best)), np.inf)
     return best, confidence_of(best.cost, min(rival, best.nobody))
 
 
@@ -42,7 +42,7 @@ def confidence_of(cost: float, rival: float) -> float:
     return float(expit((rival - cost) / SHARPNESS))
 
 
-def _contradicts(one: Person, best: Person) -> bool:
+def contradicts(one: Person, best: Person) -> bool:
     """Return whether a body is another limb in the two, or another body the head."""
     others = best.limbs
     if None not in (one.head, best.head) and one.head != best.head:

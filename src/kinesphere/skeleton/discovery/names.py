@@ -1,7 +1,7 @@
 """Names of limbs: a person's where the tree is a person, ``limb_01``… elsewhere."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,6 +11,11 @@ from kinesphere.skeleton.discovery.likeliest import confidence_of, find_person
 from kinesphere.skeleton.discovery.person import Person
 from kinesphere.skeleton.discovery.proportions import kind_of_lone_arm
 from kinesphere.skeleton.discovery.sides import Sides, find_sides
+from kinesphere.skeleton.discovery.upper_half import (
+    NO_LEGS,
+    find_upper_half,
+    sides_of_upper_half,
+)
 
 SURE = 0.75
 """Least confidence of a reading for names to be given."""
@@ -22,6 +27,7 @@ ANIMAL = (
     "by proportions alone the tree could be a person, but four legs of equal length across the "
     "trunk are rather an animal's: limbs are numbered"
 )
+SIDES = ("left_", "right_")
 LEG = ("thigh", "shank", "foot")
 ARM = ("upper_arm", "forearm", "hand")
 
@@ -46,6 +52,13 @@ class Names:
     """Why these names are not given after all: the reading is good, the size is not a person's."""
     too_large: float = 1.0
     """By which factor lengths are too large, or below 1 too small, if this is a person."""
+    straight: dict[int, str] = field(default_factory=dict)
+    """Body that is a whole arm at whose elbow no bend shows → its side."""
+
+    @property
+    def sided(self) -> bool:
+        """Whether arms and legs have names, so that a numbered limb is an exception."""
+        return any(limb.startswith(SIDES) for limb in self.limbs.values())
 
     @property
     def given(self) -> bool:
@@ -56,8 +69,9 @@ class Names:
 def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> Names:
     """Name the bodies of a tree.
 
-    A person needs two legs of two bodies at least; left and right need feet, bent knees or bent
-    elbows. Without sides pelvis, trunk and head keep their names and the rest is numbered.
+    A person needs two legs of two bodies at least, or trunk, head and two such arms and little
+    else; left and right need feet, bent knees or bent elbows. Without sides pelvis, trunk and head
+    keep their names and the rest is numbered.
 
     Parameters
     ----------
@@ -69,11 +83,13 @@ def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> N
     """
     found = find_person(figure, tree)
     nobody = no_names(tree, NOBODY)
-    if found is None:
-        return nobody
+    if found is None or not found[0].convincing:
+        half = find_upper_half(figure, tree)
+        if half is None or not half[0].convincing:
+            return nobody if found is None else replace(nobody, cost=found[0].cost)
+        found = half
     person, confidence = found
-    if not person.convincing:
-        return replace(nobody, cost=person.cost)
+    dear = person.cost if person.legs else person.cost + NO_LEGS
     beside_animal = confidence_of(person.cost, animal)
     confidence = min(confidence, beside_animal)
     account: dict[str, Json] = {
@@ -84,29 +100,29 @@ def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> N
     }
     if beside_animal < SURE:
         account |= {"person": False}
-        return replace(no_names(tree, ANIMAL), account=account, cost=person.cost)
+        return replace(no_names(tree, ANIMAL), account=account, cost=dear)
     if confidence < SURE:
-        return replace(no_names(tree, _ambiguous(confidence)), account=account, cost=person.cost)
+        return replace(no_names(tree, _ambiguous(confidence)), account=account, cost=dear)
     refused, times = "", 1.0
     if not person.of_human_size:
         times = person.times_too_large
         refused = (
             "by its proportions the tree could be a person, but the size is not a person's "
-            f"(legs of someone of {person.stature:.4g} m): limbs are numbered; if it was a "
-            "person, the unit of length is wrong"
+            f"({'legs' if person.legs else 'arms'} of someone of {person.stature:.4g} m): limbs "
+            "are numbered; if it was a person, the unit of length is wrong"
         )
         if times != 1:
             refused += f", and joints are judged as if lengths were {1 / times:.4g} times as large"
     elif (sized := confidence_of(person.cost + person.size, person.nobody)) < confidence:
         confidence = sized
         refused = "" if sized >= SURE else _ambiguous(sized)
-    sides = find_sides(figure, person)
+    sides = find_sides(figure, person) if person.legs else sides_of_upper_half(figure, person)
     given = _torso(person)
     if sides is None:
         doubt = "nothing tells left from right; arms and legs are numbered"
         unnamed = frozenset(person.limbs.keys() - given.keys())
         return Names(
-            numbered(given, tree), confidence, account, doubt, person.cost, unnamed, refused, times
+            numbered(given, tree), confidence, account, doubt, dear, unnamed, refused, times
         )
     account |= {"sides_confidence": round(sides.confidence, 3)}
     account |= {f"sides_from_{name}": round(score, 2) for name, score in sides.scores.items()}
@@ -119,14 +135,22 @@ def find_names(figure: Figure, tree: Sequence[int], animal: float = np.inf) -> N
     given |= {b: limb for b, limb in sided.items() if lone.get(b, "upper") == "upper"}
     sure = confidence * sides.confidence
     limbs = numbered(given, tree)
-    arms = [body for body, kind in lone.items() if kind == "whole"]
-    doubts = [
-        *(_whole_arm(limbs[body], sided[body].partition("_")[0]) for body in arms),
-        _not_named([limb for body, limb in limbs.items() if body not in (*given, *arms)]),
-    ]
-    doubt = "; ".join(told for told in doubts if told)
+    straight = {b: sided[b].partition("_")[0] for b, kind in lone.items() if kind == "whole"}
     unnamed = frozenset(person.limbs.keys() - given.keys())
-    return Names(limbs, sure, account, doubt, person.cost, unnamed, refused, times)
+    doubt = _doubt_about(limbs, straight)
+    return Names(limbs, sure, account, doubt, dear, unnamed, refused, times, straight)
+
+
+def renumbered(names: Names, tree: Sequence[int]) -> Names:
+    """Return the names for a tree that some bodies have left: numbers close up.
+
+    Doubts speak of the limbs that are there, by what they are called now.
+    """
+    given = {b: names.limbs[b] for b in tree if not names.limbs[b].startswith("limb_")}
+    limbs = numbered(given, tree)
+    straight = {body: side for body, side in names.straight.items() if body in limbs}
+    doubt = _doubt_about(limbs, straight) if names.sided else names.doubt
+    return replace(names, limbs=limbs, doubt=doubt, straight=straight)
 
 
 def settled(names: Names, tree: Sequence[int]) -> Names:
@@ -172,18 +196,21 @@ def _sided(person: Person, sides: Sides) -> dict[int, str]:
     return given
 
 
-def _whole_arm(limb: str, side: str) -> str:
-    """Return for a person what a limb is that has no name."""
-    return f"{limb} is the whole {side} arm: no bend shows at its elbow"
-
-
-def _not_named(limbs: Sequence[str]) -> str:
-    """Return for a person that limbs keep numbers."""
-    told = (
-        f"{', '.join(limbs)} could not be named though the rest is a person: a part of an arm "
-        "or leg, or something held or worn"
-    )
-    return told if limbs else ""
+def _doubt_about(limbs: dict[int, str], straight: dict[int, str]) -> str:
+    """Return for a person which limbs of somebody with names keep numbers, and why."""
+    doubts = [
+        f"{limbs[body]} is the whole {side} arm: no bend shows at its elbow"
+        for body, side in straight.items()
+    ]
+    rest = [
+        limb for body, limb in limbs.items() if limb.startswith("limb_") and body not in straight
+    ]
+    if rest:
+        doubts.append(
+            f"{', '.join(rest)} could not be named though the rest is a person: a part of an arm "
+            "or leg, or something held or worn"
+        )
+    return "; ".join(doubts)
 
 
 def numbered(given: dict[int, str], tree: Sequence[int]) -> dict[int, str]:

@@ -22,8 +22,9 @@ class Person:
     trunk: int
     pelvis: int | None
     """None where trunk and pelvis are one body."""
-    legs: tuple[tuple[int, ...], tuple[int, ...]]
-    """Thigh, shank and, if there is one, foot; the bodies beyond stay out."""
+    legs: tuple[tuple[int, ...], ...]
+    """Two: thigh, shank and, if there is one, foot; the bodies beyond stay out. None at all of an
+    upper half."""
     arms: tuple[Arm, ...]
     """What each arm hangs from, the trunk or a shoulder blade of its own; and upper arm, forearm
     and, if there is one, hand. Upper arm alone where no forearm moves by itself: the elbow stays as
@@ -35,7 +36,7 @@ class Person:
     lengths: int = 0
     """How many lengths were judged."""
     stature: float = np.nan
-    """m, what the legs are the legs of."""
+    """m, what the legs are the legs of; of an upper half, the arms."""
 
     @property
     def nobody(self) -> float:

@@ -16,7 +16,9 @@ class DiscoverySettings:
 
     method: Literal["spectral", "linkage"] = setting(
         "spectral",
-        "how markers are grouped into bodies: self-tuning spectral clustering, or average linkage",
+        "how markers are grouped into bodies: self-tuning spectral clustering, or average linkage, "
+        "good for rigid plates of three and more markers alone: on four recordings of 41 sparse "
+        "markers it reaches an adjusted Rand index of 0.13 to 0.47, and two people are two bodies",
         choices=("spectral", "linkage"),
         source="docs/results/skeleton.md: far better on sparse markers and on several people",
     )

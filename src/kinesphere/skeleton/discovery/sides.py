@@ -49,8 +49,8 @@ def find_sides(figure: Figure, person: Person) -> Sides | None:
     front = np.cross(up, across)  # y × z = x, if the second leg is the right one
     voices = {
         "feet": [_foot(leg, up, front) for leg in legs if len(leg) > 3],
-        "knees": [-_bend(leg[0], leg[1], leg[2], -up, front) for leg in legs],
-        "elbows": [_bend(arm[0], arm[1], arm[2], -up, front) for arm in arms if len(arm) > 2],
+        "knees": [-bend(leg[0], leg[1], leg[2], -up, front) for leg in legs],
+        "elbows": [bend(arm[0], arm[1], arm[2], -up, front) for arm in arms if len(arm) > 2],
     }
     scores = {
         name: float(np.mean([s for s in said if np.isfinite(s)]))
@@ -102,7 +102,7 @@ def _foot(leg: list[Array], up: Array, front: Array) -> float:
     return _score(unit(toes - _along(toes, up)), front)
 
 
-def _bend(upper: Array, middle: Array, lower: Array, down: Array, front: Array) -> float:
+def bend(upper: Array, middle: Array, lower: Array, down: Array, front: Array) -> float:
     """Return which way a joint bends the limb below: 1 to the front … −1 to the back.
 
     NaN if it does not bend.

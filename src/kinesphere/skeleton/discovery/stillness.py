@@ -1,4 +1,4 @@
-"""Joints at which nothing moves: bodies that nearness alone told apart."""
+"""Joints at which nothing moves, and people who do not."""
 
 import numpy as np
 
@@ -11,6 +11,22 @@ STILL = 1.5
 """Times the wander of distances within two bodies up to which those between them tell nothing: in
 the first 30 s of animals and hands, most of whose joints have not moved yet, 2 to 10 joints a
 recording have less, of 321 joints of whole recordings one has."""
+
+HARDLY = 0.01
+"""m at a person's size, `Rigidity.most` up to which nobody moved: 0.0015 to 0.0038 in four static
+trials, 0.029 and more in thirty recordings of people and things that move."""
+
+
+def told_of_stillness(partition: Partition) -> str:
+    """Return what a person should know where hardly anything moves; nothing of a single body."""
+    most = partition.rigidity.most
+    if most >= HARDLY or sum(size > 0 for size in partition.sizes) < 2:
+        return ""
+    return (
+        "the markers hardly move against each other (95 % of distances wander by less than "
+        f"{most * partition.unit * 1e3:.2g} mm, as on somebody who stands still): bodies, joints "
+        "and names are not to be trusted; record a motion of every joint, or give a model"
+    )
 
 
 def still_pairs(partition: Partition) -> frozenset[Pair]:

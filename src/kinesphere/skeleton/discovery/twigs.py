@@ -1,11 +1,9 @@
 """What was found beside a person's torso and is no limb: the torso's own."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from kinesphere.skeleton.discovery.chains import widest
-from kinesphere.skeleton.discovery.names import Names, numbered
+from kinesphere.skeleton.discovery.names import Names, renumbered
 from kinesphere.skeleton.discovery.partition import Partition, merged
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.settings import SkeletonSettings
@@ -28,7 +26,7 @@ def without_twigs(
 
     A body that is no limb, and together with trunk or pelvis is not clearly less steady than the
     two are by themselves; arms that hung from it hang from there. Numbers of limbs without a name
-    close up.
+    close up, and doubts speak of those that are there.
 
     Parameters
     ----------
@@ -54,5 +52,4 @@ def without_twigs(
         if widest(wander, both) <= SURELY * settings.split_ratio * steady:
             partition = merged(partition, parent, body, settings, limits)
             kept = tuple(other for other in kept if other != body)
-    given = {b: names.limbs[b] for b in kept if not names.limbs[b].startswith("limb_")}
-    return partition, kept, replace(names, limbs=numbered(given, kept))
+    return partition, kept, renumbered(names, kept)
