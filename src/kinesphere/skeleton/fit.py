@@ -21,6 +21,7 @@ from kinesphere.errors import BadRecording
 from kinesphere.geometry.in_words import in_millimetres
 from kinesphere.skeleton.adoption import adopt, find_adoptions
 from kinesphere.skeleton.chain import measure_chain
+from kinesphere.skeleton.discovery.size import subject_size
 from kinesphere.skeleton.far_centres import far_centres
 from kinesphere.skeleton.landmarks import BETWEEN, STEADY
 from kinesphere.skeleton.measured import MeasuredJoint
@@ -30,6 +31,7 @@ from kinesphere.skeleton.sampling import spread_over_joints
 from kinesphere.skeleton.scale import scaled, size_share, times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.solve import solve_poses
+from kinesphere.skeleton.strays import without_strays
 from kinesphere.skeleton.tree import find_tree
 
 DEFAULT = SkeletonSettings()
@@ -64,7 +66,8 @@ def fit_skeleton(
     with its parent; where the motion does not tell the joint's centre, the model's landmarks do,
     and the joint's note says so. A limb that owns too few markers for a pose of its own takes the
     joint centre as one more point; where even its twist stays open, the next limb lends it while
-    the joint between is flexed, else it is the least from rest and flagged.
+    the joint between is flexed, else it is the least from rest and flagged. Sightings that stray
+    from their marker's path for a moment count as missing, aloud.
 
     Parameters
     ----------
@@ -92,6 +95,8 @@ def fit_skeleton(
     """
     if recording.n_frames == 0:
         raise BadRecording("the recording has no frames; one at least is needed to fit a skeleton")
+    given, size = recording, subject_size(recording.markers)
+    recording, strays = without_strays(recording, size)
     tree = find_tree(recording, model)
     used = [label for limb in tree.limbs for label in tree.markers[limb]]
     columns = recording.columns(tuple(used))
@@ -101,7 +106,7 @@ def fit_skeleton(
     of_limbs = recording.markers[frames][:, columns]
     known, unit = unit is not None, times_too_large(of_limbs) if unit is None else unit
     if unit != 1:
-        smaller = with_lengths(recording, model, 1 / unit)
+        smaller = with_lengths(given, model, 1 / unit)
         motion = fit_skeleton(*smaller, settings, unit=1.0)
         told = TOO_LARGE.format(unit) if unit > 1 else TOO_SMALL.format(1 / unit)
         return larger(motion, unit, "" if known else told)
@@ -134,6 +139,7 @@ def fit_skeleton(
             "length_share": _number(share),
             "frames_measured_on": len(frames),
             "adopted_markers": dict(adopted),
+            "stray_sightings": strays.findings,
             "joints": {
                 joint.name: {
                     "observability": joint.observability,
@@ -146,6 +152,7 @@ def fit_skeleton(
             },
         },
         warnings=(
+            *strays.warnings,
             *tree.warnings,
             *_poor_fits(tree.limbs, solved.residuals, share),
             *_open_centres(described.values(), joints, far.limbs),

@@ -23,7 +23,6 @@ from kinesphere.skeleton.discovery.rigidity import trimmed_share
 from kinesphere.skeleton.discovery.root import from_the_root
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.discovery.size import PERSON, from_the_middle, subject_size
-from kinesphere.skeleton.discovery.spikes import without_spikes
 from kinesphere.skeleton.discovery.tree_model import tree_model
 from kinesphere.skeleton.discovery.tree_names import named_tree
 from kinesphere.skeleton.discovery.trust import shaken
@@ -31,6 +30,7 @@ from kinesphere.skeleton.discovery.twigs import without_twigs
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
+from kinesphere.skeleton.strays import without_strays
 
 LISTED = 8
 """Pieces that are named in the warning; the findings hold all."""
@@ -78,6 +78,7 @@ def discover(
         root needs.
     """
     settings = settings or DiscoverySettings()
+    recording, _ = without_strays(recording, subject_size(recording.markers))  # told by the fit
     lives = find_lives(recording, settings.ghost_s)
     recording = with_lives_joined(recording, lives)
     worth = worth_grouping(recording.seen, recording.rate, settings.ghost_s)
@@ -89,9 +90,9 @@ def discover(
             f"{settings.ghost_s:g} s counts as a reflection (discovery.ghost_s)"
         )
     columns = columns[from_the_middle(recording.markers[:, columns])]
-    markers = without_spikes(recording.markers[:, columns])
+    markers = recording.markers[:, columns]
     unit = subject_size(markers) / PERSON
-    markers /= unit  # from here on the subject is as large as a person
+    markers = markers / unit  # from here on the subject is as large as a person
     copies, pieces = find_copies(markers, columns)
     alike, continued = (
         {recording.labels[columns[c]]: recording.labels[columns[k]] for c, k in pairs.items()}

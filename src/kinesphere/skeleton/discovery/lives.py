@@ -9,7 +9,6 @@ from kinesphere.geometry.lifetimes import longest_runs
 from kinesphere.skeleton.discovery.copies import with_pieces_joined
 from kinesphere.skeleton.discovery.followed import SHORTEST, follow
 from kinesphere.skeleton.discovery.size import PERSON, subject_size
-from kinesphere.skeleton.discovery.spikes import without_spikes
 
 
 def find_lives(recording: Recording, ghost_s: float) -> dict[int, int]:
@@ -33,7 +32,7 @@ def find_lives(recording: Recording, ghost_s: float) -> dict[int, int]:
     columns = np.flatnonzero(around & seen.any(axis=0))
     if broken[columns].sum() < 2:
         return {}
-    markers = without_spikes(recording.markers[:, columns])
+    markers = recording.markers[:, columns]
     tracks, _ = follow(markers / (subject_size(markers) / PERSON), recording.rate)
     often = seen.sum(axis=0)
     lives: dict[int, int] = {}

@@ -1,0 +1,210 @@
+"""Sightings that a marker's own path does not know: it is elsewhere for a moment and comes back."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinesphere.kernels.jit import kernel
+
+ROUGH = 4.0
+"""Times the usual second difference around, which noise, cloth and hard movements have: a sighting
+that strays leaves it by more. Of white noise that is fifteen times its deviation."""
+FAST = 2.0
+"""Times the marker's own step around: what moves by so much anyway does not stray. Real motion of
+0.2 m from frame to frame, at 12 Hz, keeps below 0.7."""
+BACK = 4.0
+"""Times what the path before and the path after miss each other by: a marker that comes back."""
+WINDOW = 8
+"""Frames on either side that the path is known by."""
+AT_END = 3
+"""Frames at most of a run that the path is known on one side of only: nothing says it came back."""
+ENOUGH = 4
+"""Second differences that tell how rough a path is, of the fourteen around."""
+
+
+@kernel
+def find_steps_kernel(
+    markers: NDArray[np.float64], least: float, steps: NDArray[np.bool_]
+) -> None:
+    """Write into which sightings a marker steps by ``least`` m or out of nothing.
+
+    Parameters
+    ----------
+    markers : (n_frames, n_markers, 3) m
+        NaN where not seen.
+    least
+        m
+    steps : (n_frames, n_markers)
+        Written.
+    """
+    for f in range(len(markers)):
+        for m in range(markers.shape[1]):
+            square = 0.0
+            for k in range(3):
+                if f > 0:
+                    square += (markers[f, m, k] - markers[f - 1, m, k]) ** 2
+                else:
+                    square = np.inf
+            known = not np.isnan(markers[f, m, 0])
+            steps[f, m] = known and not square < least * least
+
+
+@kernel
+def judge_runs_kernel(
+    markers: NDArray[np.float64],
+    starts: NDArray[np.int64],
+    columns: NDArray[np.int64],
+    length: int,
+    least: float,
+    strays: NDArray[np.bool_],
+) -> int:
+    """Mark the runs of ``length`` frames that stray, of those that start where it says.
+
+    Returns
+    -------
+    int
+        How many sightings were marked that were not before.
+
+    Parameters
+    ----------
+    markers : (n_frames, n_markers, 3) m
+    starts, columns : (n,)
+        First frame and marker of each run.
+    least
+        m
+    strays : (n_frames, n_markers)
+        Sightings of the runs that stray are set.
+    """
+    found = 0
+    rough = np.empty(2 * WINDOW)
+    for i in range(len(starts)):
+        first, m = starts[i], columns[i]
+        if first + length <= len(markers) and _strays(
+            markers[:, m], first, first + length, least, rough
+        ):
+            for f in range(first, first + length):
+                if not np.isnan(markers[f, m, 0]) and not strays[f, m]:
+                    strays[f, m] = True
+                    found += 1
+    return found
+
+
+@kernel
+def _strays(
+    path: NDArray[np.float64], first: int, stop: int, least: float, rough: NDArray[np.float64]
+) -> bool:
+    """Return whether a marker's sightings from ``first`` until ``stop`` are none of its path."""
+    if np.isnan(path[first, 0]) or np.isnan(path[stop - 1, 0]):
+        return False
+    before, after = np.full(3, -1), np.full(3, -1)
+    _nearest(path, first - 1, -1, before)
+    _nearest(path, stop, 1, after)
+    usual = _usual_difference(path, first, stop, rough)
+    if not usual >= 0.0:
+        return False
+    least = max(least, ROUGH * usual)
+    if before[1] >= 0 and after[1] >= 0:
+        return _leaves(path, first, stop, least, before, after)
+    if before[0] < 0 and after[1] >= 0 and stop - first <= AT_END:
+        return _apart(path, first, stop, least, after)
+    if after[0] < 0 and before[1] >= 0 and stop - first <= AT_END:
+        return _apart(path, first, stop, least, before)
+    return False
+
+
+@kernel
+def _leaves(
+    path: NDArray[np.float64],
+    first: int,
+    stop: int,
+    least: float,
+    before: NDArray[np.int64],
+    after: NDArray[np.int64],
+) -> bool:
+    """Return whether a run is off the path that what comes before and after it make one of."""
+    # either side's speed comes from a neighbour that may stray itself: the pair that fits counts
+    best = np.inf
+    a, b, v, w = np.empty(3), np.empty(3), np.zeros(3), np.zeros(3)
+    lasts = after[0] - before[0]
+    for p in range(1, 3):
+        for q in range(1, 3):
+            if before[p] < 0 or after[q] < 0:
+                continue
+            miss = 0.0
+            for k in range(3):
+                a[k] = (path[before[0], k] - path[before[p], k]) / (before[0] - before[p])
+                b[k] = (path[after[q], k] - path[after[0], k]) / (after[q] - after[0])
+                miss += (path[after[0], k] - path[before[0], k] - (a[k] + b[k]) / 2 * lasts) ** 2
+            if miss < best:
+                best = miss
+                v[:] = a
+                w[:] = b
+    speed = np.sqrt(max((v * v).sum(), (w * w).sum()))
+    far = max(least, FAST * speed, BACK * np.sqrt(best))
+    here, there = path[before[0]], path[after[0]]
+    into = path[first] - here - v * (first - before[0])
+    out = path[stop - 1] - there + w * (after[0] - stop + 1)
+    if not min((into * into).sum(), (out * out).sum()) > far * far:
+        return False
+    for f in range(first, stop):
+        if np.isnan(path[f, 0]):
+            continue
+        u = (f - before[0]) / lasts  # on the cubic that joins both sides
+        s = u * u * (3 - 2 * u)
+        off = path[f] - (1 - s) * here - s * there
+        off -= lasts * u * (1 - u) * ((1 - u) * v - u * w)
+        if not (off * off).sum() > far * far:
+            return False
+    return True
+
+
+@kernel
+def _apart(
+    path: NDArray[np.float64], first: int, stop: int, least: float, near: NDArray[np.int64]
+) -> bool:
+    """Return whether a run with nothing on its other side is off the path that is on this one."""
+    slowest = np.inf
+    v = np.zeros(3)
+    for q in range(1, 3):
+        if near[q] >= 0:
+            a = (path[near[q]] - path[near[0]]) / (near[q] - near[0])
+            if (a * a).sum() < slowest:
+                slowest = (a * a).sum()
+                v[:] = a
+    far = max(least, FAST * np.sqrt(slowest))
+    for f in range(first, stop):
+        off = path[f] - path[near[0]] - v * (f - near[0])
+        if not np.isnan(off[0]) and not (off * off).sum() > far * far:
+            return False
+    return True
+
+
+@kernel
+def _nearest(path: NDArray[np.float64], f: int, step: int, found: NDArray[np.int64]) -> None:
+    """Write the nearest frames from ``f`` on in which the marker is seen, within the window."""
+    n = 0
+    for _ in range(WINDOW):
+        if n == len(found) or f < 0 or f >= len(path):
+            return
+        if not np.isnan(path[f, 0]):
+            found[n] = f
+            n += 1
+        f += step
+
+
+@kernel
+def _usual_difference(
+    path: NDArray[np.float64], first: int, stop: int, rough: NDArray[np.float64]
+) -> float:
+    """Return the median second difference beside the run, in m; NaN where too few are seen."""
+    n = 0
+    for i in range(2, WINDOW + 1):
+        for f in (first - i, stop - 1 + i):
+            if f < 1 or f + 1 >= len(path):
+                continue
+            square = 0.0
+            for k in range(3):
+                square += (path[f - 1, k] - 2 * path[f, k] + path[f + 1, k]) ** 2
+            if not np.isnan(square):
+                rough[n] = np.sqrt(square)
+                n += 1
+    return np.median(rough[:n]) if n >= ENOUGH else np.nan
