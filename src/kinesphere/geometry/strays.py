@@ -3,6 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from kinesphere.geometry.even_frames import even_frames
+from kinesphere.geometry.medians import column_medians
+from kinesphere.geometry.vectors import lengths
 from kinesphere.kernels.strays import find_steps_kernel, judge_runs_kernel
 
 LONGEST = 0.1
@@ -12,6 +15,10 @@ RUN = (3, 10)
 PASSES = 8
 """Times that paths are looked at again: what strayed beside other strays shows when they are gone.
 Of 5 % strays none is left after four."""
+MATES = 5
+"""Nearest markers of its body that a marker is held against: more of a body of 50 cost time only."""
+SAMPLED = 100
+"""Frames that show which are the nearest."""
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -37,8 +44,7 @@ def find_strays(markers: Array, rate: float, least: float) -> Mask:
     """
     strays: Mask = np.zeros(markers.shape[:2], dtype=bool)
     steps: Mask = np.empty_like(strays)
-    # the speed is at most half of what a stray leaves by, so its step is half of it at least
-    find_steps_kernel(markers, least / 2, steps)
+    find_steps_kernel(markers, least, steps)
     starts, columns = np.nonzero(steps)
     longest = int(np.clip(round(LONGEST * rate), *RUN))
     for _ in range(PASSES):
@@ -55,3 +61,52 @@ def find_strays(markers: Array, rate: float, least: float) -> Mask:
         keep = np.isin(columns, again) & ~strays[starts, columns]
         starts, columns = starts[keep], columns[keep]
     return strays
+
+
+def find_strays_of_body(body: Array, rate: float, least: float) -> Mask:
+    """Return which sightings stray from the other markers of a rigid body, (n_frames, n).
+
+    Distances to the body's other markers are paths of their own, on which no movement of the body
+    shows: there, what strays in a fast movement is found, too. A sighting is off where most of its
+    distances stray and most of those of the others do not on its account: of three markers both.
+
+    Parameters
+    ----------
+    body : (n_frames, n, 3) m
+        Markers that keep their distances, more or less.
+    rate
+        Hz
+    least
+        m, of distances. What moves across the distance changes it less.
+    """
+    n = body.shape[1]
+    strays: Mask = np.zeros(body.shape[:2], dtype=bool)
+    if n < 3:
+        return strays
+    pairs = _pairs(body)
+    apart = np.zeros((len(body), len(pairs), 3))
+    for i, (a, b) in enumerate(pairs):
+        apart[:, i, 0] = lengths(body[:, a] - body[:, b])
+    off = find_strays(apart, rate, least)
+    frames = np.flatnonzero(off.any(axis=1))
+    if len(frames) == 0:
+        return strays
+    ends = np.zeros((len(pairs), n))
+    ends[np.arange(len(pairs)), pairs[:, 0]] = ends[np.arange(len(pairs)), pairs[:, 1]] = 1.0
+    seen = np.isfinite(apart[frames, :, 0]) @ ends
+    count = off[frames] @ ends
+    most = count == count.max(axis=1, keepdims=True)
+    strays[frames] = (count >= 2) & (2 * count > seen) & most
+    return strays
+
+
+def _pairs(body: Array) -> NDArray[np.intp]:
+    """Return each marker with its nearest others, `MATES` at most, (n_pairs, 2)."""
+    few = body[even_frames(len(body), SAMPLED)]
+    pairs = set()
+    for m in range(body.shape[1]):
+        usual = column_medians(off := lengths(few - few[:, m : m + 1]), np.isfinite(off))
+        usual[m] = np.nan
+        near = np.argsort(usual, kind="stable")[: min(MATES, int(np.isfinite(usual).sum()))]
+        pairs |= {(min(m, int(k)), max(m, int(k))) for k in near}
+    return np.array(sorted(pairs), dtype=np.intp).reshape(-1, 2)

@@ -96,8 +96,8 @@ def fit_skeleton(
     if recording.n_frames == 0:
         raise BadRecording("the recording has no frames; one at least is needed to fit a skeleton")
     given, size = recording, subject_size(recording.markers)
-    recording, strays = without_strays(recording, size)
     tree = find_tree(recording, model)
+    recording, strays = without_strays(recording, size, tree.markers.values())
     used = [label for limb in tree.limbs for label in tree.markers[limb]]
     columns = recording.columns(tuple(used))
     frames = spread_over_joints(

@@ -1,17 +1,21 @@
 """Sightings that cannot be their marker's: gaps for all that is measured, and told."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from kinesphere.data import Array, Json, Mask, Recording
 from kinesphere.geometry.in_words import in_millimetres
-from kinesphere.geometry.strays import find_strays
+from kinesphere.geometry.strays import find_strays, find_strays_of_body
 from kinesphere.geometry.vectors import lengths
 
 NEAR = 1 / 16
 """Of the subject's size, 50 mm of a person: what strays less is no stray. Skin leaves 22 mm of noise
 at most; by 50 mm and back in a hundredth of a second is 50 times the acceleration of gravity, twice."""
+OF_BODY = 0.5
+"""Times that, for distances to markers of the same body, which change by half of it or more in two
+thirds of all directions."""
 LISTED = 20
 """Runs of frames of a marker that the findings hold."""
 
@@ -26,18 +30,31 @@ class Strays:
     """One line, or none."""
 
 
-def without_strays(recording: Recording, size: float) -> tuple[Recording, Strays]:
-    """Return the recording with sightings off their marker's path as not seen, and what they were.
+def without_strays(
+    recording: Recording, size: float, bodies: Iterable[Sequence[str]] = ()
+) -> tuple[Recording, Strays]:
+    """Return the recording with sightings that cannot be the marker's as not seen, and which.
 
-    As `kinesphere.geometry.strays.find_strays` finds them, from each marker's path alone.
+    Those are off the marker's own path, as `kinesphere.geometry.strays.find_strays` tells it, or
+    leave the other markers of its body (`find_strays_of_body`); for a tenth of a second at most.
 
     Parameters
     ----------
     recording
     size
         m, as `kinesphere.skeleton.discovery.size.subject_size` returns it.
+    bodies
+        Labels of the markers of each body, where they are known.
     """
     strays = find_strays(recording.markers, recording.rate, NEAR * size)
+    if strays.any():
+        markers = np.where(strays[..., None], np.nan, recording.markers)
+    else:
+        markers = recording.markers
+    for labels in bodies:
+        columns = list(recording.columns(tuple(labels)))
+        body = markers[:, columns]
+        strays[:, columns] |= find_strays_of_body(body, recording.rate, OF_BODY * NEAR * size)
     if not strays.any():
         return recording, Strays({}, ())
     markers = np.where(strays[..., None], np.nan, recording.markers)
