@@ -12,7 +12,9 @@ LONGEST = 0.1
 """s; what is away for longer may have moved there and back: a fist does in 0.15 s."""
 RUN = (3, 10)
 """Frames that `LONGEST` is at least and at most."""
-PASSES = 8
+AT_END = 3
+"""Frames at most of a run that the path is known on one side of only: nothing says it came back."""
+PASSES = 16
 """Times that paths are looked at again: what strayed beside other strays shows when they are gone.
 Of 5 % strays none is left after four."""
 MATES = 5
@@ -47,18 +49,18 @@ def find_strays(markers: Array, rate: float, least: float) -> Mask:
     find_steps_kernel(markers, least, steps)
     starts, columns = np.nonzero(steps)
     longest = int(np.clip(round(LONGEST * rate), *RUN))
+    lengths_of = {False: range(1, longest + 1), True: range(1, AT_END + 1)}
+    at_end = False
     for _ in range(PASSES):
-        if len(starts) == 0:
-            break
         found = 0
-        for length in range(1, longest + 1):
-            if new := judge_runs_kernel(markers, starts, columns, length, least, strays):
+        for length in lengths_of[at_end] if len(starts) else ():
+            if new := judge_runs_kernel(markers, starts, columns, length, least, at_end, strays):
                 markers = np.where(strays[..., None], np.nan, markers)
                 found += new
-        if not found:
+        if not found and at_end:
             break
-        again = np.flatnonzero(strays.any(axis=0))
-        keep = np.isin(columns, again) & ~strays[starts, columns]
+        at_end = not found  # ends are judged by what is left
+        keep = ~strays[starts, columns]
         starts, columns = starts[keep], columns[keep]
     return strays
 

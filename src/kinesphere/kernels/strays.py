@@ -16,8 +16,6 @@ BACK = 4.0
 """Times what the path before and the path after miss each other by: a marker that comes back."""
 WINDOW = 8
 """Frames on either side that the path is known by."""
-AT_END = 3
-"""Frames at most of a run that the path is known on one side of only: nothing says it came back."""
 ENOUGH = 4
 """Second differences that tell how rough a path is, of the fourteen around."""
 
@@ -71,6 +69,7 @@ def judge_runs_kernel(
     columns: NDArray[np.int64],
     length: int,
     least: float,
+    at_end: bool,
     strays: NDArray[np.bool_],
 ) -> int:
     """Mark the runs of ``length`` frames that stray, of those that start where it says.
@@ -87,6 +86,8 @@ def judge_runs_kernel(
         First frame and marker of each run.
     least
         m
+    at_end
+        True for runs that the path is known on one side of only, False for all others.
     strays : (n_frames, n_markers)
         Sightings of the runs that stray are set.
     """
@@ -97,7 +98,7 @@ def judge_runs_kernel(
         stop = first + length
         if stop > len(markers) or not _leaves_path(markers[::-1, m], len(markers) - stop, least):
             continue
-        if _strays(markers[:, m], first, stop, least, rough):
+        if _strays(markers[:, m], first, stop, least, at_end, rough):
             for f in range(first, stop):
                 if not np.isnan(markers[f, m, 0]) and not strays[f, m]:
                     strays[f, m] = True
@@ -107,7 +108,12 @@ def judge_runs_kernel(
 
 @kernel
 def _strays(
-    path: NDArray[np.float64], first: int, stop: int, least: float, rough: NDArray[np.float64]
+    path: NDArray[np.float64],
+    first: int,
+    stop: int,
+    least: float,
+    at_end: bool,
+    rough: NDArray[np.float64],
 ) -> bool:
     """Return whether a marker's sightings from ``first`` until ``stop`` are none of its path."""
     if np.isnan(path[first, 0]) or np.isnan(path[stop - 1, 0]):
@@ -115,17 +121,15 @@ def _strays(
     before, after = np.full(3, -1), np.full(3, -1)
     _nearest(path, first - 1, -1, before)
     _nearest(path, stop, 1, after)
+    if at_end != (before[0] < 0 or after[0] < 0) or max(before[1], after[1]) < 0:
+        return False
     usual = _usual_difference(path, first, stop, rough)
     if not usual >= 0.0:
         return False
     least = max(least, ROUGH * usual)
-    if before[0] >= 0 and after[0] >= 0 and max(before[1], after[1]) >= 0:
+    if not at_end:
         return _leaves(path, first, stop, least, before, after)
-    if before[0] < 0 and after[1] >= 0 and stop - first <= AT_END:
-        return _apart(path, first, stop, least, after)
-    if after[0] < 0 and before[1] >= 0 and stop - first <= AT_END:
-        return _apart(path, first, stop, least, before)
-    return False
+    return _apart(path, first, stop, least, after if before[0] < 0 else before)
 
 
 @kernel
