@@ -15,7 +15,9 @@ from kinesphere.skeleton.strays import without_strays
 def moved(bodies):
     """Return the performance's recording with every 500th sighting 0.5 m off, and which."""
     rng = np.random.default_rng(3)
-    markers = bodies.recording.markers + rng.normal(scale=0.001, size=bodies.recording.markers.shape)
+    markers = bodies.recording.markers + rng.normal(
+        scale=0.001, size=bodies.recording.markers.shape
+    )
     off = rng.random(markers.shape[:2]) < 0.002
     way = rng.normal(size=(int(off.sum()), 3))
     clean = replace(bodies.recording, markers=markers)

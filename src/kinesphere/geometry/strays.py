@@ -6,7 +6,8 @@ from numpy.typing import NDArray
 from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.medians import column_medians
 from kinesphere.geometry.vectors import lengths
-from kinesphere.kernels.strays import find_steps_kernel, judge_runs_kernel
+from kinesphere.kernels.stray_steps import find_steps_kernel
+from kinesphere.kernels.strays import judge_runs_kernel
 
 LONGEST = 0.1
 """s; what is away for longer may have moved there and back: a fist does in 0.15 s."""
@@ -15,10 +16,10 @@ RUN = (3, 10)
 AT_END = 3
 """Frames at most of a run that the path is known on one side of only: nothing says it came back."""
 PASSES = 16
-"""Times that paths are looked at again: what strayed beside other strays shows when they are gone.
-Of 5 % strays none is left after four."""
+"""Times that paths are looked at again at most: what strays beside other strays shows when these
+are gone."""
 MATES = 5
-"""Nearest markers of its body that a marker is held against: more of a body of 50 cost time only."""
+"""Nearest markers of its body that a marker is held against: more, of 50, take time only."""
 SAMPLED = 100
 """Frames that show which are the nearest."""
 

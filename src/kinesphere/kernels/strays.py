@@ -4,62 +4,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.kernels.jit import kernel
+from kinesphere.kernels.stray_steps import FAST, leaves_path
 
 ROUGH = 5.0
 """Times the second difference that a quarter of those around keep below, which noise, cloth and
 hard movements have: a sighting that strays leaves the path by more. Of white noise that is thirteen
 times its deviation. A quarter, as four strays in seventeen frames spoil more than half."""
-FAST = 2.0
-"""Times the marker's own step around: what moves by so much anyway does not stray. Real motion of
-0.2 m from frame to frame, at 12 Hz, keeps below 0.7."""
 BACK = 4.0
 """Times what the path before and the path after miss each other by: a marker that comes back."""
 WINDOW = 8
 """Frames on either side that the path is known by."""
 ENOUGH = 4
 """Second differences that tell how rough a path is, of the fourteen around."""
-
-
-@kernel
-def find_steps_kernel(
-    markers: NDArray[np.float64], least: float, steps: NDArray[np.bool_]
-) -> None:
-    """Write which sightings may begin a run that strays by ``least`` m.
-
-    Those that are not where the path before leads, by either of the speeds that it may have; and
-    all with a gap just before.
-
-    Parameters
-    ----------
-    markers : (n_frames, n_markers, 3) m
-        NaN where not seen.
-    least
-        m
-    steps : (n_frames, n_markers)
-        Written.
-    """
-    for f in range(len(markers)):
-        for m in range(markers.shape[1]):
-            steps[f, m] = _leaves_path(markers[:, m], f, least)
-
-
-@kernel
-def _leaves_path(path: NDArray[np.float64], f: int, least: float) -> bool:
-    if np.isnan(path[f, 0]):
-        return False
-    if f < 3:
-        return True
-    step = 0.0
-    for k in range(3):
-        step += (path[f, k] - path[f - 1, k]) ** 2
-    if step < least * least / 4:  # leaving it twice as fast as it moves, see `FAST`
-        return False
-    one = two = 0.0
-    for k in range(3):
-        off = path[f, k] - path[f - 1, k]
-        one += (off - path[f - 1, k] + path[f - 2, k]) ** 2
-        two += (off - (path[f - 1, k] - path[f - 3, k]) / 2) ** 2
-    return not (one <= least * least and two <= least * least)
 
 
 @kernel
@@ -96,7 +52,7 @@ def judge_runs_kernel(
     for i in range(len(starts)):
         first, m = starts[i], columns[i]
         stop = first + length
-        if stop > len(markers) or not _leaves_path(markers[::-1, m], len(markers) - stop, least):
+        if stop > len(markers) or not leaves_path(markers[::-1, m], len(markers) - stop, least):
             continue
         if _strays(markers[:, m], first, stop, least, at_end, rough):
             for f in range(first, stop):

@@ -11,8 +11,8 @@ from kinesphere.geometry.strays import find_strays, find_strays_of_body
 from kinesphere.geometry.vectors import lengths
 
 NEAR = 1 / 16
-"""Of the subject's size, 50 mm of a person: what strays less is no stray. Skin leaves 22 mm of noise
-at most; by 50 mm and back in a hundredth of a second is 50 times the acceleration of gravity, twice."""
+"""Of the subject's size, 50 mm of a person: what is off by less does not stray. Skin leaves 22 mm
+of noise at most; 50 mm there and back in 10 ms takes 500 m/s², three times over."""
 OF_BODY = 0.5
 """Times that, for distances to markers of the same body, which change by half of it or more in two
 thirds of all directions."""
@@ -63,7 +63,7 @@ def without_strays(
 
 def _told(recording: Recording, strays: Mask) -> Strays:
     findings: dict[str, Json] = {}
-    farthest, worst, most = 0.0, "", ""
+    farthest, worst = 0.0, ""
     count = strays.sum(axis=0)
     for c in np.flatnonzero(count):
         at, label = np.flatnonzero(strays[:, c]), recording.labels[c]
@@ -81,7 +81,9 @@ def _told(recording: Recording, strays: Mask) -> Strays:
     most = recording.labels[int(count.argmax())]
     n = int(count.sum())
     sightings = "1 sighting is" if n == 1 else f"{n:,} sightings are"
-    whose = "" if len(findings) == 1 else f" of {len(findings)} markers (most {most}, {count.max()})"
+    whose = (
+        "" if len(findings) == 1 else f" of {len(findings)} markers (most {most}, {count.max()})"
+    )
     told = (
         f"{sightings} off the path{whose} that the marker is on just before and after, by up to "
         f"{in_millimetres(farthest)} ({worst}): taken for missing"
