@@ -31,7 +31,7 @@ def test_a_run_that_is_elsewhere_strays(paths, length, first):
     length = last - first
     if first < 2 and length > 3:
         pytest.skip("nothing says where it came from")
-    paths[first:last, 1] += [0.2, -0.1, 0.2]
+    paths[first:last, 1] += [0.4, -0.2, 0.4]
     np.testing.assert_array_equal(
         find_strays(paths, RATE, LEAST), strays_at(paths, slice(first, last))
     )
@@ -70,6 +70,13 @@ def test_a_punch_there_and_back_does_not_stray():
     punch = np.zeros((len(t), 1, 3))
     punch[:, 0, 0] = 0.6 * np.exp(-((t / 0.06) ** 2))  # 9 m/s, 300 m/s², there and back in 0.2 s
     assert not find_strays(punch, 50.0, LEAST).any()
+
+
+def test_who_stops_at_the_first_or_last_frame_does_not_stray():
+    kick = np.zeros((40, 1, 3))
+    kick[0, 0, 0] = 0.25  # 3 m/s at 12 Hz, and rest
+    assert not find_strays(kick, 12.0, LEAST).any()
+    assert not find_strays(kick[::-1], 12.0, LEAST).any()
 
 
 def test_a_stop_in_one_frame_does_not_stray():

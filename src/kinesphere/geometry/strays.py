@@ -15,6 +15,9 @@ RUN = (3, 10)
 """Frames that `LONGEST` is at least and at most."""
 AT_END = 3
 """Frames at most of a run that the path is known on one side of only: nothing says it came back."""
+FASTEST = 400.0
+"""Times `least` per second, 20 m/s of a person, that nothing moves by: a run at an end strays only
+beyond, as its marker may have stopped there. A kick in the first frame of a cut does 3 m/s."""
 PASSES = 16
 """Times that paths are looked at again at most: what strays beside other strays shows when these
 are gone."""
@@ -51,11 +54,14 @@ def find_strays(markers: Array, rate: float, least: float) -> Mask:
     starts, columns = np.nonzero(steps)
     longest = int(np.clip(round(LONGEST * rate), *RUN))
     lengths_of = {False: range(1, longest + 1), True: range(1, AT_END + 1)}
+    fastest = FASTEST * least / rate if rate > 0 else np.inf
     at_end = False
     for _ in range(PASSES):
         found = 0
         for length in lengths_of[at_end] if len(starts) else ():
-            if new := judge_runs_kernel(markers, starts, columns, length, least, at_end, strays):
+            if new := judge_runs_kernel(
+                markers, starts, columns, length, least, fastest, at_end, strays
+            ):
                 markers = np.where(strays[..., None], np.nan, markers)
                 found += new
         if not found and at_end:

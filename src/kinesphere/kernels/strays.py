@@ -25,6 +25,7 @@ def judge_runs_kernel(
     columns: NDArray[np.int64],
     length: int,
     least: float,
+    fastest: float,
     at_end: bool,
     strays: NDArray[np.bool_],
 ) -> int:
@@ -42,6 +43,8 @@ def judge_runs_kernel(
         First frame and marker of each run.
     least
         m
+    fastest
+        m that anything moves from frame to frame at most.
     at_end
         True for runs that the path is known on one side of only, False for all others.
     strays : (n_frames, n_markers)
@@ -54,7 +57,7 @@ def judge_runs_kernel(
         stop = first + length
         if stop > len(markers) or not leaves_path(markers[::-1, m], len(markers) - stop, least):
             continue
-        if _strays(markers[:, m], first, stop, least, at_end, rough):
+        if _strays(markers[:, m], first, stop, least, fastest, at_end, rough):
             for f in range(first, stop):
                 if not np.isnan(markers[f, m, 0]) and not strays[f, m]:
                     strays[f, m] = True
@@ -68,6 +71,7 @@ def _strays(
     first: int,
     stop: int,
     least: float,
+    fastest: float,
     at_end: bool,
     rough: NDArray[np.float64],
 ) -> bool:
@@ -85,7 +89,7 @@ def _strays(
     least = max(least, ROUGH * usual)
     if not at_end:
         return _leaves(path, first, stop, least, before, after)
-    return _apart(path, first, stop, least, after if before[0] < 0 else before)
+    return _apart(path, first, stop, least, fastest, after if before[0] < 0 else before)
 
 
 @kernel
@@ -141,9 +145,17 @@ def _leaves(
 
 @kernel
 def _apart(
-    path: NDArray[np.float64], first: int, stop: int, least: float, near: NDArray[np.int64]
+    path: NDArray[np.float64],
+    first: int,
+    stop: int,
+    least: float,
+    fastest: float,
+    near: NDArray[np.int64],
 ) -> bool:
-    """Return whether a run with nothing on its other side is off the path that is on this one."""
+    """Return whether a run with nothing on its other side is off the path that is on this one.
+
+    It did not come back: it may have stopped there, so it must be where nothing goes so fast.
+    """
     slowest = np.inf
     v = np.zeros(3)
     for q in range(1, 3):
@@ -152,7 +164,8 @@ def _apart(
             if (a * a).sum() < slowest:
                 slowest = (a * a).sum()
                 v[:] = a
-    far = max(least, FAST * np.sqrt(slowest))
+    away = min(abs(first - near[0]), abs(stop - 1 - near[0]))
+    far = max(least, FAST * np.sqrt(slowest), fastest * away)
     for f in range(first, stop):
         off = path[f] - path[near[0]] - v * (f - near[0])
         if not np.isnan(off[0]) and not (off * off).sum() > far * far:
