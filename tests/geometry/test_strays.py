@@ -134,6 +134,14 @@ def test_a_body_shows_what_strays_in_a_fast_movement(kicked):
     )
 
 
+def test_a_body_shows_what_strays_at_an_end(kicked):
+    kicked[0, 2] += [0.3, 0.2, -0.3]
+    assert not find_strays(kicked, 12.0, LEAST).any()
+    np.testing.assert_array_equal(
+        find_strays_of_body(kicked, 12.0, LEAST / 2), strays_at(kicked, [0], 2)
+    )
+
+
 def test_a_body_that_moves_shows_none(kicked, rng):
     assert not find_strays_of_body(kicked, 12.0, LEAST / 2).any()
     loose = kicked + 0.1 * np.sin(np.arange(200) / 6)[:, None, None] * rng.normal(size=(4, 3))

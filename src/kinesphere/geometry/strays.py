@@ -18,6 +18,8 @@ AT_END = 3
 FASTEST = 400.0
 """Times `least` per second, 20 m/s of a person, that nothing moves by: a run at an end strays only
 beyond, as its marker may have stopped there. A kick in the first frame of a cut does 3 m/s."""
+STRETCHED = 100.0
+"""The same for distances within a body, 2.5 m/s: skin and cloth go there and back by less."""
 PASSES = 16
 """Times that paths are looked at again at most: what strays beside other strays shows when these
 are gone."""
@@ -30,7 +32,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-def find_strays(markers: Array, rate: float, least: float) -> Mask:
+def find_strays(markers: Array, rate: float, least: float, fastest: float = FASTEST) -> Mask:
     """Return which sightings are off their marker's own path for a moment, (n_frames, n).
 
     A run of frames strays if the marker steps into and out of it, and is off the cubic between what
@@ -47,6 +49,8 @@ def find_strays(markers: Array, rate: float, least: float) -> Mask:
         Hz
     least
         m, above 0; what is nearer to the path is noise.
+    fastest
+        Times ``least`` per second that nothing moves by; asked at ends of trajectories only.
     """
     strays: Mask = np.zeros(markers.shape[:2], dtype=bool)
     steps: Mask = np.empty_like(strays)
@@ -54,13 +58,13 @@ def find_strays(markers: Array, rate: float, least: float) -> Mask:
     starts, columns = np.nonzero(steps)
     longest = int(np.clip(round(LONGEST * rate), *RUN))
     lengths_of = {False: range(1, longest + 1), True: range(1, AT_END + 1)}
-    fastest = FASTEST * least / rate if rate > 0 else np.inf
+    step = fastest * least / rate if rate > 0 else np.inf
     at_end = False
     for _ in range(PASSES):
         found = 0
         for length in lengths_of[at_end] if len(starts) else ():
             if new := judge_runs_kernel(
-                markers, starts, columns, length, least, fastest, at_end, strays
+                markers, starts, columns, length, least, step, at_end, strays
             ):
                 markers = np.where(strays[..., None], np.nan, markers)
                 found += new
@@ -96,7 +100,7 @@ def find_strays_of_body(body: Array, rate: float, least: float) -> Mask:
     apart = np.zeros((len(body), len(pairs), 3))
     for i, (a, b) in enumerate(pairs):
         apart[:, i, 0] = lengths(body[:, a] - body[:, b])
-    off = find_strays(apart, rate, least)
+    off = find_strays(apart, rate, least, STRETCHED)
     frames = np.flatnonzero(off.any(axis=1))
     if len(frames) == 0:
         return strays
