@@ -1,11 +1,13 @@
 """Performances whose truth is known, small enough to be solved many times."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from kinesphere.labelling import built_in_model
 from kinesphere.skeleton import fit_skeleton
-from kinesphere.synthetic import make_performance
+from kinesphere.synthetic import make_performance, spoil_with_noise
 
 SIZE = {"rate": 25.0, "calibration_s": 40.0, "free_s": 4.0, "repetitions": 1}
 
@@ -32,3 +34,10 @@ def bodies_motion(bodies):
 def cmu41_motion(cmu41):
     """Return the motion found from `cmu41` with the built-in model."""
     return fit_skeleton(cmu41.recording, built_in_model("cmu41"))
+
+
+@pytest.fixture(scope="session")
+def recorded_alone(bodies):
+    """Return what cameras saw of `bodies`, with noise; labels are ``*0``, ``*1``."""
+    recording = spoil_with_noise(bodies.recording, np.random.default_rng(8), deviation=0.001)
+    return replace(recording, labels=tuple(f"*{i}" for i in range(recording.n_markers)))

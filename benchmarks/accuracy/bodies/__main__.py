@@ -21,6 +21,7 @@ from benchmarks.accuracy.bodies.linked_limbs import linked_figures
 from benchmarks.accuracy.bodies.page import bars, page
 from benchmarks.accuracy.bodies.partitions import Row, rows
 from benchmarks.accuracy.bodies.perturbed import perturbed_rows
+from benchmarks.accuracy.bodies.strayed import strayed_rows
 from benchmarks.accuracy.bodies.told import told_rows
 from kinesphere import __version__
 
@@ -52,6 +53,7 @@ SECTIONS: dict[str, Callable[[], Any]] = {
     "partitions": _partitions,
     "changes": _changes,
     "perturbed": lambda: [asdict(row) for row in perturbed_rows()],
+    "strayed": lambda: [asdict(row) for row in strayed_rows()],
     "centres": lambda: [asdict(row) for row in centre_rows()],
     "told": lambda: [asdict(row) for row in told_rows()],
     "arm": arm_figures,

@@ -136,7 +136,7 @@ def actor_case(seed: int, *, spoilt: bool) -> Case:
         recording = spoil_with_gaps(recording, rng, share=0.1, gap_s=0.3)
         recording = spoil_with_ghosts(recording, rng, n_ghosts=5)
     what = "soft tissue, gaps, ghosts" if spoilt else "1 mm noise"
-    return _synthetic(f"actor {seed}, {what}", recording, performance)
+    return synthetic_case(f"actor {seed}, {what}", recording, performance)
 
 
 def creature_cases(seed: int) -> list[Case]:
@@ -151,7 +151,7 @@ def creature_cases(seed: int) -> list[Case]:
     for name, plan, noise in plans:
         performance = make_performance(np.random.default_rng(seed), plan=plan, n_frames=FRAMES)
         recording = spoil_with_noise(performance.recording, rng, deviation=noise)
-        cases.append(_synthetic(f"{name} {seed}", recording, performance))
+        cases.append(synthetic_case(f"{name} {seed}", recording, performance))
     people = {
         name: make_performance(np.random.default_rng([seed, k]), plan=HUMAN, n_frames=FRAMES)
         for k, name in enumerate(("Anna", "Ben"))
@@ -173,7 +173,8 @@ def creature_cases(seed: int) -> list[Case]:
     return cases
 
 
-def _synthetic(name: str, recording: Recording, performance: Performance) -> Case:
+def synthetic_case(name: str, recording: Recording, performance: Performance) -> Case:
+    """Return a performance as a case, with what is true of it."""
     owner = {label: limb.name for limb in performance.skeleton.limbs for label in limb.markers}
     truth = {f"*{i}": owner[x] for i, x in enumerate(recording.labels) if x in owner}
     edges = {frozenset((joint.parent, joint.child)) for joint in performance.skeleton.joints}

@@ -12,6 +12,7 @@ from benchmarks.accuracy.bodies.changes import changes_section
 from benchmarks.accuracy.bodies.hips_page import hip_bars, hip_section
 from benchmarks.accuracy.bodies.linked_limbs import linked_section
 from benchmarks.accuracy.bodies.perturbed import perturbed_section
+from benchmarks.accuracy.bodies.strayed import strayed_section
 from benchmarks.accuracy.bodies.told_page import told_bars, told_section
 
 SIZES = [2, 3, 4]
@@ -135,6 +136,7 @@ def page(found: dict[str, Any]) -> str:
             _partitions(found["partitions"]),
             changes_section(found["changes"]),
             perturbed_section(found["perturbed"]),
+            strayed_section(found["strayed"]),
             centres_section(found["centres"]),
             told_section(found["told"]),
             hip_section(found["hips"]),

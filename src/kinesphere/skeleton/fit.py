@@ -16,6 +16,7 @@ from kinesphere.data import (
 from kinesphere.errors import BadRecording
 from kinesphere.skeleton.adoption import adopt, find_adoptions
 from kinesphere.skeleton.chain import measure_chain
+from kinesphere.skeleton.discovery.size import subject_size
 from kinesphere.skeleton.doubts import open_centres, poor_fits
 from kinesphere.skeleton.far_centres import far_centres
 from kinesphere.skeleton.filling import hidden_samples
@@ -25,6 +26,7 @@ from kinesphere.skeleton.sampling import spread_over_joints
 from kinesphere.skeleton.scale import scaled, size_share, times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.solve import solve_poses
+from kinesphere.skeleton.strays import without_strays
 from kinesphere.skeleton.tree import find_tree
 
 DEFAULT = SkeletonSettings()
@@ -51,7 +53,8 @@ def fit_skeleton(
     with its parent; where the motion does not tell the joint's centre, the model's landmarks do,
     and the joint's note says so. A limb that owns too few markers for a pose of its own takes the
     joint centre as one more point; where even its twist stays open, the next limb lends it while
-    the joint between is flexed, else it is the least from rest and flagged.
+    the joint between is flexed, else it is the least from rest and flagged. Sightings that stray
+    from their marker's path for a moment count as missing, aloud.
 
     Parameters
     ----------
@@ -79,7 +82,9 @@ def fit_skeleton(
     """
     if recording.n_frames == 0:
         raise BadRecording("the recording has no frames; one at least is needed to fit a skeleton")
+    given, size = recording, subject_size(recording.markers)
     tree = find_tree(recording, model)
+    recording, strays = without_strays(recording, size, tree.markers.values())
     used = [label for limb in tree.limbs for label in tree.markers[limb]]
     columns = recording.columns(tuple(used))
     frames = spread_over_joints(
@@ -88,7 +93,7 @@ def fit_skeleton(
     of_limbs = recording.markers[frames][:, columns]
     known, unit = unit is not None, times_too_large(of_limbs) if unit is None else unit
     if unit != 1:
-        smaller = with_lengths(recording, model, 1 / unit)
+        smaller = with_lengths(given, model, 1 / unit)
         motion = fit_skeleton(*smaller, settings, unit=1.0)
         told = TOO_LARGE.format(unit) if unit > 1 else TOO_SMALL.format(1 / unit)
         return larger(motion, unit, "" if known else told)
@@ -125,6 +130,7 @@ def fit_skeleton(
             "adopted_markers": dict(adopted),
             "hidden_samples": hidden,
             "hidden_share": _number(hidden / max(of_samples, 1)),
+            "stray_sightings": strays.findings,
             "joints": {
                 joint.name: {
                     "observability": joint.observability,
@@ -137,6 +143,7 @@ def fit_skeleton(
             },
         },
         warnings=(
+            *strays.warnings,
             *tree.warnings,
             *poor_fits(tree.limbs, solved.residuals, share),
             *open_centres(described.values(), joints, far.limbs),

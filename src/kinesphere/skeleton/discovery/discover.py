@@ -33,7 +33,6 @@ from kinesphere.skeleton.discovery.rigidity import trimmed_share
 from kinesphere.skeleton.discovery.root import from_the_root
 from kinesphere.skeleton.discovery.settings import DiscoverySettings
 from kinesphere.skeleton.discovery.size import PERSON, from_the_middle, subject_size
-from kinesphere.skeleton.discovery.spikes import without_spikes
 from kinesphere.skeleton.discovery.tree_model import tree_model
 from kinesphere.skeleton.discovery.tree_names import named_tree
 from kinesphere.skeleton.discovery.trust import shaken
@@ -41,6 +40,7 @@ from kinesphere.skeleton.discovery.twigs import without_twigs
 from kinesphere.skeleton.sampling import spread_frames
 from kinesphere.skeleton.scale import times_too_large
 from kinesphere.skeleton.settings import SkeletonSettings
+from kinesphere.skeleton.strays import without_strays
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,6 +87,7 @@ def discover(
     """
     settings = settings or DiscoverySettings()
     check_places(recording)
+    recording, _ = without_strays(recording, subject_size(recording.markers))  # told by the fit
     limits = skeleton or SkeletonSettings()
     named = recording.labels
     lives = find_lives(recording, settings.ghost_s, limits)
@@ -101,9 +102,9 @@ def discover(
         )
     check_bodies(len(columns), settings.bodies)
     columns = columns[from_the_middle(recording.markers[:, columns])]
-    markers = without_spikes(recording.markers[:, columns])
+    markers = recording.markers[:, columns]
     unit = subject_size(markers) / PERSON
-    markers /= unit  # from here on the subject is as large as a person
+    markers = markers / unit  # from here on the subject is as large as a person
     copies, pieces = find_copies(markers, columns)
     alike, continued = (
         {recording.labels[columns[c]]: recording.labels[columns[k]] for c, k in pairs.items()}

@@ -9,7 +9,6 @@ from kinesphere.geometry.lifetimes import longest_runs
 from kinesphere.skeleton.discovery.followed import SHORTEST, follow
 from kinesphere.skeleton.discovery.reunited import reunite
 from kinesphere.skeleton.discovery.size import PERSON, subject_size
-from kinesphere.skeleton.discovery.spikes import without_spikes
 from kinesphere.skeleton.settings import SkeletonSettings
 
 BROKEN = 0.5
@@ -41,9 +40,8 @@ def find_lives(
     columns = np.flatnonzero(around & seen.any(axis=0))
     if broken[columns].sum() < 2:
         return {}
-    markers = without_spikes(recording.markers[:, columns])
-    markers /= subject_size(markers) / PERSON
-    tracks, joined = follow(markers, recording.rate)
+    markers = recording.markers[:, columns]
+    tracks, joined = follow(markers / (subject_size(markers) / PERSON), recording.rate)
     if all_broken(len(columns) - len(tracks), recording.seen):
         tracks = reunite(tracks, joined, recording.rate, limits or SkeletonSettings())
     often = seen.sum(axis=0)

@@ -1,0 +1,110 @@
+"""Sightings far off for a moment change nothing, are told, and the recording keeps them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kinesphere.data import Recording
+from kinesphere.skeleton import discover, fit_skeleton
+from kinesphere.skeleton.discovery.size import subject_size
+from kinesphere.skeleton.strays import without_strays
+
+
+@pytest.fixture(scope="module")
+def moved(bodies):
+    """Return the performance's recording with every 500th sighting 0.5 m off, and which."""
+    rng = np.random.default_rng(3)
+    markers = bodies.recording.markers + rng.normal(
+        scale=0.001, size=bodies.recording.markers.shape
+    )
+    off = rng.random(markers.shape[:2]) < 0.002
+    way = rng.normal(size=(int(off.sum()), 3))
+    clean = replace(bodies.recording, markers=markers)
+    spoilt = markers.copy()
+    spoilt[off] += 0.5 * way / np.linalg.norm(way, axis=1)[:, None]
+    return clean, replace(clean, markers=spoilt), off
+
+
+def test_skeleton_and_poses_are_those_of_the_same_gaps(bodies, moved):
+    clean, spoilt, off = moved
+    gaps = replace(clean, markers=np.where(off[..., None], np.nan, clean.markers))
+    right, found = (fit_skeleton(r, bodies.model) for r in (gaps, spoilt))
+    assert [j.observability for j in found.skeleton.joints] == [
+        j.observability for j in right.skeleton.joints
+    ]
+    np.testing.assert_array_equal(found.joint_centres(), right.joint_centres())
+    np.testing.assert_array_equal(found.residuals, right.residuals)
+    assert np.nanmax(found.residuals) < 0.01
+
+
+def test_they_are_told(bodies, moved):
+    _, spoilt, off = moved
+    kept = spoilt.markers.copy()
+    step = fit_skeleton(spoilt, bodies.model).history[-1]
+    told = step.findings["stray_sightings"]
+    labels = spoilt.labels
+    assert {label: one["sightings"] for label, one in told.items()} == {
+        labels[c]: off[:, c].sum() for c in np.flatnonzero(off.any(axis=0))
+    }
+    for label, one in told.items():
+        frames = np.flatnonzero(off[:, labels.index(label)]) + spoilt.first_frame
+        assert set(one["first_frames"]) <= set(frames.tolist())
+        assert one["farthest_mm"] == pytest.approx(500, abs=25)
+    (line,) = [text for text in step.warnings if "off the path" in text]
+    assert line.startswith(f"{off.sum():,} sightings are off the path of {len(told)} markers")
+    np.testing.assert_array_equal(spoilt.markers, kept)
+
+
+def test_bodies_and_names_from_motion_alone_are_those_without_them(recorded_alone):
+    whole = discover(recorded_alone)
+    rng = np.random.default_rng(4)
+    markers = recorded_alone.markers.copy()
+    off = rng.random(markers.shape[:2]) < 0.01
+    markers[off] += rng.normal(size=(int(off.sum()), 3))
+    found = discover(replace(recorded_alone, markers=markers))
+    assert {frozenset(s.markers) for s in found.model.segments} == {
+        frozenset(s.markers) for s in whole.model.segments
+    }
+    assert {s.name for s in found.model.segments} == {s.name for s in whole.model.segments}
+
+
+def test_a_marker_once_a_kilometre_away_leaves_bodies_and_names(recorded_alone):
+    whole = discover(recorded_alone)
+    for where in ((300, 5), (300,)):
+        markers = recorded_alone.markers.copy()
+        markers[where] += 1e3
+        found = discover(replace(recorded_alone, markers=markers))
+        assert {s.name: set(s.markers) for s in found.model.segments} == {
+            s.name: set(s.markers) for s in whole.model.segments
+        }
+
+
+def test_nothing_is_told_where_nothing_strays(recorded_alone):
+    size = subject_size(recorded_alone.markers)
+    found, told = without_strays(recorded_alone, size)
+    assert found is recorded_alone
+    assert told.findings == {}
+    assert told.warnings == ()
+
+
+@pytest.mark.parametrize("times", [0.001, 1.0, 1000.0])
+def test_the_unit_does_not_matter(moved, times):
+    _, spoilt, off = moved
+    scaled = replace(spoilt, markers=spoilt.markers * times)
+    found, _ = without_strays(scaled, subject_size(scaled.markers))
+    np.testing.assert_array_equal(found.seen, ~off)
+
+
+def test_one_sighting_reads_as_one():
+    path = np.zeros((30, 4, 3)) + np.arange(4)[:, None] * 0.4
+    path[:, :, 0] += np.linspace(0, 0.3, 30)[:, None]
+    path[12, 2, 1] += 0.4
+    recording = Recording(path, ("a", "b", "c", "d"), 100.0, first_frame=5)
+    found, told = without_strays(recording, 0.8)
+    assert told.warnings == (
+        "1 sighting is off the path that the marker is on just before and after, by up to 400 mm "
+        "(c in frame 17): taken for missing",
+    )
+    assert not found.seen[12, 2]
+    assert found.seen.sum() == 30 * 4 - 1
