@@ -13,6 +13,9 @@ from kinesphere.geometry.vectors import lengths
 NEAR = 1 / 16
 """Of the subject's size, 50 mm of a person: what is off by less does not stray. Skin leaves 22 mm
 of noise at most; 50 mm there and back in 10 ms takes 500 m/s², three times over."""
+SLOW = 60.0
+"""Hz, below which limbs get farther between two frames by themselves, as the square of the time:
+50 mm there and back are 180 m/s² here, about what a kick does; at 10 Hz a hand waves by as much."""
 OF_BODY = 0.5
 """Times that, for distances to markers of the same body, which change by half of it or more in two
 thirds of all directions."""
@@ -46,7 +49,9 @@ def without_strays(
     bodies
         Labels of the markers of each body, where they are known.
     """
-    strays = find_strays(recording.markers, recording.rate, NEAR * size)
+    rate = recording.rate
+    near = NEAR * size * max(1.0, SLOW / rate) ** 2
+    strays = find_strays(recording.markers, rate, near)
     if strays.any():
         markers = np.where(strays[..., None], np.nan, recording.markers)
     else:
@@ -54,7 +59,7 @@ def without_strays(
     for labels in bodies:
         columns = list(recording.columns(tuple(labels)))
         body = markers[:, columns]
-        strays[:, columns] |= find_strays_of_body(body, recording.rate, OF_BODY * NEAR * size)
+        strays[:, columns] |= find_strays_of_body(body, rate, OF_BODY * near)
     if not strays.any():
         return recording, Strays({}, ())
     markers = np.where(strays[..., None], np.nan, recording.markers)
