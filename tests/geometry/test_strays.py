@@ -65,6 +65,14 @@ def test_who_goes_and_stays_does_not_stray(paths):
     assert not find_strays(paths, RATE, LEAST).any()
 
 
+@pytest.mark.parametrize(("rate", "longest"), [(12.0, 3), (50.0, 5), (100.0, 10), (240.0, 10)])
+def test_runs_last_a_tenth_of_a_second_in_three_to_ten_frames(rate, longest):
+    for more in (0, 1):
+        still = np.zeros((60, 1, 3))
+        still[20 : 20 + longest + more] = [0.0, 0.3, 0.0]
+        assert find_strays(still, rate, LEAST).sum() == (0 if more else longest)
+
+
 def test_a_punch_there_and_back_does_not_stray():
     t = np.arange(-0.5, 0.5, 1 / 50)
     punch = np.zeros((len(t), 1, 3))
