@@ -9,11 +9,12 @@ from kinesphere.data import Recording
 from kinesphere.skeleton import discover, fit_skeleton
 from kinesphere.skeleton.discovery.size import subject_size
 from kinesphere.skeleton.strays import without_strays
+from kinesphere.synthetic import HAND, make_performance
 
 
 @pytest.fixture(scope="module")
 def moved(bodies):
-    """Return the performance's recording with every 500th sighting 0.5 m off, and which."""
+    """Return the performance's recording with every 500th sighting 1 m off, and which."""
     rng = np.random.default_rng(3)
     markers = bodies.recording.markers + rng.normal(
         scale=0.001, size=bodies.recording.markers.shape
@@ -22,7 +23,7 @@ def moved(bodies):
     way = rng.normal(size=(int(off.sum()), 3))
     clean = replace(bodies.recording, markers=markers)
     spoilt = markers.copy()
-    spoilt[off] += 0.5 * way / np.linalg.norm(way, axis=1)[:, None]
+    spoilt[off] += way / np.linalg.norm(way, axis=1)[:, None]
     return clean, replace(clean, markers=spoilt), off
 
 
@@ -50,7 +51,7 @@ def test_they_are_told(bodies, moved):
     for label, one in told.items():
         frames = np.flatnonzero(off[:, labels.index(label)]) + spoilt.first_frame
         assert set(one["first_frames"]) <= set(frames.tolist())
-        assert one["farthest_mm"] == pytest.approx(500, abs=25)
+        assert one["farthest_mm"] == pytest.approx(1000, abs=25)
     (line,) = [text for text in step.warnings if "off the path" in text]
     assert line.startswith(f"{off.sum():,} sightings are off the path of {len(told)} markers")
     np.testing.assert_array_equal(spoilt.markers, kept)
@@ -61,7 +62,8 @@ def test_bodies_and_names_from_motion_alone_are_those_without_them(recorded_alon
     rng = np.random.default_rng(4)
     markers = recorded_alone.markers.copy()
     off = rng.random(markers.shape[:2]) < 0.01
-    markers[off] += rng.normal(size=(int(off.sum()), 3))
+    way = rng.normal(size=(int(off.sum()), 3))
+    markers[off] += way / np.linalg.norm(way, axis=1)[:, None]
     found = discover(replace(recorded_alone, markers=markers))
     assert {frozenset(s.markers) for s in found.model.segments} == {
         frozenset(s.markers) for s in whole.model.segments
@@ -86,6 +88,28 @@ def test_nothing_is_told_where_nothing_strays(recorded_alone):
     assert found is recorded_alone
     assert told.findings == {}
     assert told.warnings == ()
+
+
+@pytest.mark.parametrize("plan", [{"plan": HAND}, {}], ids=["hand", "person"])
+@pytest.mark.parametrize("rate", [8.0, 12.0, 20.0, 30.0, 50.0])
+def test_few_frames_a_second_make_no_strays_of_movement(rate, plan):
+    performance = make_performance(np.random.default_rng(4), rate=rate, free_s=20, **plan)
+    recording = performance.recording
+    bodies = [segment.markers for segment in performance.model.segments]
+    found, _ = without_strays(recording, subject_size(recording.markers), bodies)
+    assert found is recording
+
+
+def test_at_few_frames_a_second_bodies_tell(bodies):
+    """A movement may leave its path by 0.3 m between two of twelve frames; no body stretches so."""
+    slow = bodies.recording.markers[::8].copy()
+    slow[20, 3] += [0.0, 0.3, 0.3]
+    recording = replace(bodies.recording, markers=slow, rate=bodies.recording.rate / 8)
+    size = subject_size(slow)
+    assert without_strays(recording, size)[0] is recording
+    found, _ = without_strays(recording, size, [s.markers for s in bodies.model.segments])
+    assert not found.seen[20, 3]
+    assert found.seen.sum() == recording.seen.sum() - 1
 
 
 @pytest.mark.parametrize("times", [0.001, 1.0, 1000.0])

@@ -11,7 +11,7 @@ from kinesphere.kernels.strays import judge_runs_kernel
 
 LONGEST = 0.1
 """s; what is away for longer may have moved there and back: a fist does in 0.15 s."""
-RUN = (3, 10)
+RUN = (1, 10)
 """Frames that `LONGEST` is at least and at most."""
 AT_END = 3
 """Frames at most of a run that the path is known on one side of only: nothing says it came back."""
@@ -56,7 +56,7 @@ def find_strays(markers: Array, rate: float, least: float, fastest: float = FAST
     steps: Mask = np.empty_like(strays)
     find_steps_kernel(markers, least, steps)
     starts, columns = np.nonzero(steps)
-    longest = int(np.clip(round(LONGEST * rate), *RUN))
+    longest = int(np.clip(LONGEST * rate + 1e-9, *RUN))
     lengths_of = {False: range(1, longest + 1), True: range(1, AT_END + 1)}
     step = fastest * least / rate if rate > 0 else np.inf
     at_end = False

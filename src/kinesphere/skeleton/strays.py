@@ -13,9 +13,10 @@ from kinesphere.geometry.vectors import lengths
 NEAR = 1 / 16
 """Of the subject's size, 50 mm of a person: what is off by less does not stray. Skin leaves 22 mm
 of noise at most; 50 mm there and back in 10 ms takes 500 m/s², three times over."""
-SLOW = 60.0
-"""Hz, below which limbs get farther between two frames by themselves, as the square of the time:
-50 mm there and back are 180 m/s² here, about what a kick does; at 10 Hz a hand waves by as much."""
+SLOW = 80.0
+"""Hz, below which limbs get as far between frames by themselves, as the square of the time: 50 mm
+there and back are 320 m/s² here, more than a kick's. At 20 Hz a hand that waves is so far off its
+path. Distances within a body do not ask for it."""
 OF_BODY = 0.5
 """Times that, for distances to markers of the same body, which change by half of it or more in two
 thirds of all directions."""
@@ -59,7 +60,7 @@ def without_strays(
     for labels in bodies:
         columns = list(recording.columns(tuple(labels)))
         body = markers[:, columns]
-        strays[:, columns] |= find_strays_of_body(body, rate, OF_BODY * near)
+        strays[:, columns] |= find_strays_of_body(body, rate, OF_BODY * NEAR * size)
     if not strays.any():
         return recording, Strays({}, ())
     markers = np.where(strays[..., None], np.nan, recording.markers)
