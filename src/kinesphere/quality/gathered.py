@@ -4,23 +4,26 @@ from collections.abc import Callable, Mapping, Sequence
 
 from kinesphere.quality.at_zero import AT_ZERO
 from kinesphere.quality.findings import Finding
-from kinesphere.quality.marker_checks import COINCIDENT
+from kinesphere.quality.marker_checks import COINCIDENT, JUMP
 
 LISTED = 5
 """Pairs of markers that are named in one line."""
+FEW_JUMPS = 5
+"""Markers that jump, each of which has a line of its own."""
 
 
 def gathered(findings: Sequence[Finding]) -> tuple[Finding, ...]:
     """Return the findings; gaps, zeros and copies of one severity are one, in place of the first.
 
-    Markers and figures of each stay with the findings given.
+    So are jumps of more than five markers. What each marker did stays with the findings given.
     """
     told: list[Finding] = []
     done: set[tuple[str, str]] = set()
     for finding in findings:
         kind = (finding.rule, finding.severity)
         alike = [f for f in findings if (f.rule, f.severity) == kind]
-        if finding.rule not in GATHERED or len(alike) == 1:
+        few = FEW_JUMPS if finding.rule == JUMP else 1
+        if finding.rule not in GATHERED or len(alike) <= few:
             told.append(finding)
         elif kind not in done:
             done.add(kind)
@@ -76,6 +79,24 @@ def _copies(alike: Sequence[Finding]) -> Finding:
     )
 
 
+def _jumps(alike: Sequence[Finding]) -> Finding:
+    times = {f.markers[0]: int(dict(f.numbers)["jumps"]) for f in alike}
+    speeds = {f.markers[0]: dict(f.numbers)["fastest_m_per_s"] for f in alike}
+    frames = [f.frame for f in alike if f.frame is not None]
+    most, fastest = max(times, key=lambda m: times[m]), max(speeds, key=lambda m: speeds[m])
+    return Finding(
+        JUMP,
+        alike[0].severity,
+        f"{len(alike)} markers jump {sum(times.values()):,} times, first into frame "
+        f"{min(frames)}, most {most} ({times[most]}); the fastest is {fastest}, with "
+        f"{speeds[fastest]:.0f} m/s",
+        alike[0].remedy,
+        markers=tuple(times),
+        frame=min(frames),
+        numbers=(("markers", len(alike)), ("jumps", sum(times.values()))),
+    )
+
+
 def _from_to(shares: Mapping[str, float]) -> str:
     low, high = f"{min(shares.values()):.1%}", f"{max(shares.values()):.1%}"
     return high if low == high else f"{low} to {high}"
@@ -85,6 +106,8 @@ GATHERED: Mapping[str, Callable[[Sequence[Finding]], Finding]] = {
     "gap": _gaps,
     AT_ZERO: _zeros,
     COINCIDENT: _copies,
+    JUMP: _jumps,
 }
 """Rules that are gathered: reconstructions in pieces, exports without a sign for what is missing
-and files that hold everything twice have one finding for nearly every marker."""
+files that hold everything twice and those full of bad samples have one finding for nearly every
+marker."""

@@ -27,6 +27,7 @@ ALIKE = 0.005
 FARTHEST = 1e5
 """m; what lies farther out was never measured: 32-bit floats tell it to 8 mm at best."""
 COINCIDENT = "coincident"
+JUMP = "jump"
 TOGETHER = 0.9
 """Share of the frames of the one seen less that show both, of a copy that nobody labelled."""
 STILL = 1e-6
@@ -144,7 +145,7 @@ def check_jumps(recording: Recording) -> Iterator[Finding]:
         first = recording.first_frame + int(at[fast[0] + 1])
         label = recording.labels[c]
         yield Finding(
-            "jump",
+            JUMP,
             "warning",
             f"{label} jumps {_times(len(fast))}, first into frame {first}; the fastest by "
             f"{steps[worst] * 1e3:.0f} mm into frame {recording.first_frame + int(at[worst + 1])} "
