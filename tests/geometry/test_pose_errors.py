@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from kinesphere.geometry.pose_errors import mean_pose_covariance, point_covariance, pose_covariance
+from kinesphere.geometry.pose_errors import (
+    mean_pose_covariance,
+    point_covariance,
+    pose_covariance,
+    usual_pose_covariance,
+)
 from kinesphere.geometry.rigid import fit_rigid, into_frame
 
 NOISE = 1e-3
@@ -32,6 +37,19 @@ def test_frames_count_by_the_points_they_show(shape):
     seen[1, 1:] = False  # no pose
     expected = (pose_covariance(shape[:3], noise[:3]) + 2 * pose_covariance(shape, noise)) / 3
     np.testing.assert_allclose(mean_pose_covariance(shape, noise, seen), expected, rtol=1e-9)
+
+
+def test_usual_poses_are_those_that_tell_most(shape):
+    noise = np.full(4, NOISE)
+    seen = np.ones((8, 4), dtype=bool)
+    whole, three = pose_covariance(shape, noise), pose_covariance(shape[:3], noise[:3])
+    np.testing.assert_allclose(usual_pose_covariance(shape, noise, seen), whole, rtol=1e-9)
+    seen[0, 3] = False  # the others are nearly on a line
+    usual = usual_pose_covariance(shape, noise, seen)
+    told = (np.linalg.inv(three) + 7 * np.linalg.inv(whole)) / 8
+    np.testing.assert_allclose(usual @ told, np.eye(6), atol=1e-6)
+    mean = mean_pose_covariance(shape, noise, seen)
+    assert np.trace(whole[:3, :3]) < np.trace(usual[:3, :3]) < 0.2 * np.trace(mean[:3, :3])
 
 
 def test_what_is_told_is_what_fits_to_some_of_the_points_err_by(shape, rng):

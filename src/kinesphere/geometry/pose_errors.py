@@ -26,12 +26,19 @@ def pose_covariance(shape: Array, noise: Array) -> Array:
         Of a small turn (rad) about the shape's origin and a shift (m), both in the shape's frame;
         the inverse of the weighted least-squares normal matrix.
     """
+    return _inverse(_information(shape, noise))
+
+
+def _information(shape: Array, noise: Array) -> Array:
     known = np.isfinite(shape).all(axis=1)
     shape, noise = shape[known], noise[known]
     moved = np.concatenate([-hat(shape), np.broadcast_to(np.eye(3), (len(shape), 3, 3))], axis=2)
-    information = np.einsum("pki,p,pkj->ij", moved, 1 / noise**2, moved)
-    covariance: Array = np.linalg.pinv(information, hermitian=True, rcond=1e-12)
-    return covariance
+    information: Array = np.einsum("pki,p,pkj->ij", moved, 1 / noise**2, moved)
+    return information
+
+
+def _inverse(information: Array) -> Array:
+    return np.asarray(np.linalg.pinv(information, hermitian=True, rcond=1e-12))
 
 
 def mean_pose_covariance(shape: Array, noise: Array, seen: NDArray[np.bool_]) -> Array:
@@ -46,14 +53,30 @@ def mean_pose_covariance(shape: Array, noise: Array, seen: NDArray[np.bool_]) ->
         As `pose_covariance` takes them.
     seen : (n_frames, n_points)
     """
+    each, times = _of_sets(shape, noise, seen)
+    mean: Array = np.average([_inverse(one) for one in each], axis=0, weights=times)
+    return mean
+
+
+def usual_pose_covariance(shape: Array, noise: Array, seen: NDArray[np.bool_]) -> Array:
+    """Return the same by the mean of what poses tell: the inverse of their information's, (6, 6).
+
+    As `mean_pose_covariance`, but a few frames in which little tells a pose hardly count: what
+    weighs all frames alike should suit those that tell most.
+    """
+    each, times = _of_sets(shape, noise, seen)
+    return _inverse(np.average(each, axis=0, weights=times))
+
+
+def _of_sets(shape: Array, noise: Array, seen: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Return what poses by each set of points that tells one know, (n, 6, 6), and how often."""
     sets, times = np.unique(seen, axis=0, return_counts=True)
     enough = (sets & np.isfinite(shape).all(axis=1)).sum(axis=1) >= POSED
     sets, times = sets[enough], times[enough]
-    if not len(sets) or (len(sets) == 1 and sets.all()):
-        return pose_covariance(shape, noise)
-    each = np.array([pose_covariance(shape[one], noise[one]) for one in sets])
-    mean: Array = np.average(each, axis=0, weights=times)
-    return mean
+    if not len(sets):
+        sets, times = np.ones((1, len(shape)), dtype=np.bool_), np.ones(1, dtype=times.dtype)
+    each = np.array([_information(shape[one], noise[one]) for one in sets])
+    return each, times.astype(np.float64)
 
 
 def point_covariance(pose: Array, points: Array) -> Array:

@@ -7,7 +7,11 @@ import numpy as np
 from kinesphere.data import Array, JointModel
 from kinesphere.geometry.centres import Turning, View, fit_centre, untold
 from kinesphere.geometry.joint_turns import joint_modes
-from kinesphere.geometry.pose_errors import mean_pose_covariance, pose_covariance
+from kinesphere.geometry.pose_errors import (
+    mean_pose_covariance,
+    pose_covariance,
+    usual_pose_covariance,
+)
 from kinesphere.geometry.rigid import RigidFit, into_frame
 from kinesphere.geometry.skin_noise import skin_noise
 from kinesphere.geometry.vectors import is_seen
@@ -22,9 +26,6 @@ from kinesphere.skeleton.weighing import LOOSELY, UNLIKE, weighed
 STRAYS = 0.75
 """Share of `SkeletonSettings.undetermined_mm` that a limb's markers may stray in each direction on
 average: skin of 20 mm a radian leaves 3 mm, real trunks 11, two limbs taken for one 20."""
-
-LEAST = 0.01
-"""Share of the frames that a marker counts for at least."""
 
 
 class FoundJoint(NamedTuple):
@@ -100,7 +101,7 @@ def _pose_covariance(parent: Body, own: Array, others: Array) -> Array:
     seen = is_seen(others)[sees]
     if parent.centre is not None:
         seen = np.concatenate([seen, np.ones((len(seen), 1), dtype=np.bool_)], axis=1)
-    return mean_pose_covariance(parent.points, 1 / np.sqrt(parent.weights), seen)
+    return usual_pose_covariance(parent.points, 1 / np.sqrt(parent.weights), seen)
 
 
 def _turning(
@@ -118,9 +119,6 @@ def _turning(
         theirs = skin_noise(
             into_frame(parent.rotations, parent.shifts, others)[known], parent.shape, modes[known]
         )
-        # skin that is hidden moves no pose: a marker counts for as many frames as show it
-        mine /= np.sqrt(is_seen(own)[known].mean(axis=0).clip(LEAST))
-        theirs /= np.sqrt(is_seen(others)[known].mean(axis=0).clip(LEAST))
         skin, seeing = pose_covariance(shape, mine), pose_covariance(parent.shape, theirs)
     return Turning(
         rotations,
