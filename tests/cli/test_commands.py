@@ -286,6 +286,9 @@ def test_a_solved_folder_tells_of_itself_and_converts(solved, call, tmp_path):
         assert (tmp_path / name).stat().st_size > 1000
     header = (tmp_path / "table.csv").read_text().split("\n", 1)[0]
     assert "left_knee.axis1_deg" in header
+    said = ok(call("convert", folder / "recording.c3d", tmp_path / "markers.trc"))
+    assert "joint centres that Kinesphere computed" in said
+    assert "left_hip" not in (tmp_path / "markers.trc").read_text()
 
 
 @pytest.mark.slow

@@ -92,6 +92,19 @@ def test_one_pair_alone_is_named_alone(walker):
     assert set(finding.markers) == {"LKNE", "RKNE"}
 
 
+def test_where_other_markers_of_the_same_knees_lie_rightly_legs_may_be_crossed(walker):
+    inner = walker.markers[:, [walker.labels.index(label) for label in ("RKNE", "LKNE")]]
+    seated = replace(
+        walker,
+        markers=np.concatenate([walker.markers, inner + 0.01], axis=1),
+        labels=(*walker.labels, "LKNI", "RKNI"),
+    )
+    (finding,) = found(seated)
+    assert "left and right labels of the legs may be exchanged: LKNI and RKNI" in finding.what
+    (finding,) = found(exchanged(seated, ("KNE",)))
+    assert "labels of the legs are exchanged" in finding.what
+
+
 @pytest.mark.parametrize("names", [("ANK", "HEE", "TOE"), ("WRA",)], ids=["feet", "hands"])
 def test_crossed_feet_and_hands_are_no_exchange(walker, names):
     """By where they are that is the same thing, and people do it."""

@@ -40,6 +40,7 @@ def convert(
     from kinesphere.cli.options import BadArgument
     from kinesphere.data import Recording, Solution
     from kinesphere.io import read
+    from kinesphere.io.own_points import without_own_points
 
     settings = (
         settings_from_options(assignments, settings_file) if assignments or settings_file else None
@@ -50,9 +51,11 @@ def convert(
     found = read(source)
     if isinstance(found, Solution):
         found = part_for(found, target)
+    suffix = target.suffix.lower()
+    if isinstance(found, Recording) and suffix != ".c3d":  # only C3D says that they are computed
+        found = without_own_points(found)
     write_as_set(found, target, settings)
     warnings = [warning for step in getattr(found, "history", ()) for warning in step.warnings]
-    suffix = target.suffix.lower()
     if isinstance(found, Recording) and (lost := left_behind(found, suffix)):
         warnings.append(f"{suffix} has no place for {', '.join(lost)}: left behind")
     size = target.stat().st_size if target.is_file() else None

@@ -46,6 +46,7 @@ def label(
     from kinesphere.cli.files import read_recording
     from kinesphere.cli.solve import model_from_text
     from kinesphere.io import check_file_place, replacing, write
+    from kinesphere.io.own_points import without_own_points
     from kinesphere.labelling import built_in_model
     from kinesphere.labelling import label as give_labels
     from kinesphere.report import labelling_html, write_label_table
@@ -62,7 +63,7 @@ def label(
     settings = settings_from_options(assignments, settings_file)
     with progress_bar(quiet=as_json) as progress:
         progress("reading", 0, 3)
-        recording = read_recording(file)
+        recording = without_own_points(read_recording(file))
         chosen = model_from_text(model)
         if isinstance(chosen, str):
             chosen = built_in_model(chosen)

@@ -30,7 +30,8 @@ MOST = 0.5
 frames of 27 recordings, heads in 6 % of one trial, knees in 4 % where an actor's hips go to their
 limits."""
 NEARLY_ALL = 0.9
-"""Share of frames from which on nobody has just crossed their legs."""
+"""Share of frames from which on nobody has just crossed their legs, if all thighs and knees say so:
+markers at the inside of two knees cross first, and stay so while somebody sits."""
 REMEDY = "exchange the two labels of each of these pairs"
 
 
@@ -61,10 +62,24 @@ _PARTS = (
     _Part("head", HEAD, ()),
     _Part(
         "arms",
-        ("UPA", "UA1", "UA2", "UA3", "UAP", "UAD", "BICEP", "ELB", "HLE", "HME", "LEL", "MEL"),
+        (
+            "UPA",
+            "UA1",
+            "UA2",
+            "UA3",
+            "UAP",
+            "UAD",
+            "BICEP",
+            "ELB",
+            "IEL",
+            "HLE",
+            "HME",
+            "LEL",
+            "MEL",
+        ),
         (
             *("FRM", "FA1", "FA2", "FA3", "FAP", "FAD", "FAR", "FAS", "FAU", "WR", "IWR", "OWR"),
-            *("RSP", "USP", "RAD", "ULN", "HAND", "HM2", "HM5", "FIN", "MCP"),
+            *("RSP", "USP", "RAD", "ULN", "HAND", "IHAND", "OHAND", "HM2", "HM5", "FIN", "MCP"),
         ),
     ),
 )
@@ -98,7 +113,8 @@ def _sides(recording: Recording, body: Body, first: int) -> Iterator[Finding]:
             continue
         pairs = [(recording.labels[left], recording.labels[r]) for left, r in shares]
         share = min(shares[columns] for columns in near & shares.keys())
-        verb = "are" if share > NEARLY_ALL else "may be"
+        told = {columns for columns in near if _seen_together(recording, columns)}
+        verb = "are" if share > NEARLY_ALL and told <= shares.keys() else "may be"
         yield Finding(
             "sides",
             "warning",
@@ -121,6 +137,10 @@ def _right_of(body: Body) -> Array | None:
         if right is not None and name not in wrong and np.isfinite(right).all(axis=1).any():
             return right
     return None
+
+
+def _seen_together(recording: Recording, columns: tuple[int, int]) -> bool:
+    return bool(recording.seen[:, list(columns)].all(axis=1).any())
 
 
 def _crossed(recording: Recording, columns: tuple[int, int], right: Array) -> float:

@@ -9,6 +9,7 @@ from kinesphere.data import Array, Json, Mask, Recording
 from kinesphere.geometry.in_words import in_millimetres
 from kinesphere.geometry.strays import find_strays, find_strays_of_body
 from kinesphere.geometry.vectors import lengths
+from kinesphere.skeleton.discovery.size import PERSON
 
 NEAR = 1 / 16
 """Of the subject's size, 50 mm of a person: what is off by less does not stray. Skin leaves 22 mm
@@ -17,6 +18,9 @@ SLOW = 80.0
 """Hz, below which limbs get as far between frames by themselves, as the square of the time: 50 mm
 there and back are 320 m/s² here, more than a kick's. At 20 Hz a hand that waves is so far off its
 path. Distances within a body do not ask for it."""
+TINIEST = 1 / 20
+"""Of a person: what seems smaller has its lengths in another unit. What is truly smaller is moved
+as fast as a person moves: fingers tap."""
 OF_BODY = 0.5
 """Times that, for distances to markers of the same body, which change by half of it or more in two
 thirds of all directions."""
@@ -51,7 +55,8 @@ def without_strays(
         Labels of the markers of each body, where they are known.
     """
     rate = recording.rate
-    near = NEAR * size * max(1.0, SLOW / rate) ** 2
+    fast = PERSON if TINIEST * PERSON < size < PERSON else size  # whose limbs, how far in a frame
+    near = NEAR * max(size, fast * (SLOW / rate) ** 2)
     strays = find_strays(recording.markers, rate, near)
     if strays.any():
         markers = np.where(strays[..., None], np.nan, recording.markers)
@@ -92,7 +97,8 @@ def _told(recording: Recording, strays: Mask) -> Strays:
     )
     told = (
         f"{sightings} off the path{whose} that the marker is on just before and after, by up to "
-        f"{in_millimetres(farthest)} ({worst}): taken for missing"
+        f"{in_millimetres(farthest)} ({worst}): taken for missing, and "
+        "kept in the files that are written"
     )
     return Strays(findings, (told,))
 

@@ -34,6 +34,7 @@ def test_trunk_head_and_arms_are_named_with_their_sides(seed):
     assert limbs(found, owner) == {limb: {limb} for limb in set(owner.values())}
     assert found.step.findings["names_confidence"] > 0.7
     assert found.model.root == "trunk"
+    assert any("may be an animal's fore half" in said for said in found.step.warnings)
 
 
 def test_in_a_mirror_left_is_right():

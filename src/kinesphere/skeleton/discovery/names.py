@@ -197,8 +197,14 @@ def _sided(person: Person, sides: Sides) -> dict[int, str]:
 
 
 def _doubt_about(limbs: dict[int, str], straight: dict[int, str]) -> str:
-    """Return for a person which limbs of somebody with names keep numbers, and why."""
-    doubts = [
+    """Return what speaks against the names of a person, and which limbs keep numbers, and why."""
+    doubts = []
+    if not any(limb.endswith("thigh") for limb in limbs.values()):
+        doubts.append(
+            "no legs are seen: what is named as the upper half of a person may be an animal's fore "
+            "half"
+        )
+    doubts += [
         f"{limbs[body]} is the whole {side} arm: no bend shows at its elbow"
         for body, side in straight.items()
     ]
