@@ -61,14 +61,14 @@ def view(
         check_file_place(edits)
     before = read_edits(saved) if take.solution is not None and saved.exists() else ()
     server, viewer = serve(take, resolved.name, saved, before, host=host, port=port, dark=dark)
-    address = f"http://{server.get_host()}:{server.get_port()}"
-    if as_json:
-        print_json({"address": address, "edits": str(saved) if take.solution else None})
-    else:
-        stdout().print(f"{plain(path)} is at {address}  (Ctrl-C ends it)", soft_wrap=True)
-    if not no_open:
-        webbrowser.open(address)
     try:
+        address = f"http://{server.get_host()}:{server.get_port()}"
+        if as_json:
+            print_json({"address": address, "edits": str(saved) if take.solution else None})
+        else:
+            stdout().print(f"{plain(path)} is at {address}  (Ctrl-C ends it)", soft_wrap=True)
+        if not no_open:
+            webbrowser.open(address)
         while True:
             time.sleep(0.5)
     except KeyboardInterrupt:
