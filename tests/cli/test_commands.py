@@ -127,6 +127,23 @@ def test_info_tells_how_many_times_too_large_lengths_are(call, recording, tmp_pa
     assert "likely wrong: lengths are 25.4 times too large" in ok(call("info", file))
 
 
+def test_info_doubts_a_file_that_says_another_way_is_up(call, performance, tmp_path):
+    assert "Nothing looks wrong with it" in ok(
+        call("info", written(performance.recording, tmp_path))
+    )
+    turned = replace(performance.recording, up="+z")
+    out = ok(call("info", written(turned, tmp_path)))
+    assert "the file says up is +z, but in 100% of the frames the head is along +y" in " ".join(
+        out.split()
+    )
+    assert "Nothing else looks wrong with it" in out
+
+
+def written(recording, folder):
+    write(recording, folder / "walk.c3d")
+    return folder / "walk.c3d"
+
+
 def test_info_of_a_c3d(call, c3d):
     shown = json.loads(ok(call("info", c3d, "--json")))
     assert shown["read"]["format"].upper() == "C3D"

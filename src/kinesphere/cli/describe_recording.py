@@ -90,11 +90,13 @@ def show_recording(summary: dict[str, Any]) -> None:
             for gap in worst
         ]
         print_table(console, ("marker", "missing", "gaps", "longest", "from"), rows, "lrrrl")
-    if summary["warnings"]:
+    doubts = [*summary["warnings"], *summary["up"]["warnings"]]
+    if doubts:
         print_title(console, "Read with doubts")
-        print_warnings(console, summary["warnings"])
+        print_warnings(console, doubts)
     findings = summary["findings_in_short"]
-    print_title(console, "What is wrong with it" if findings else "Nothing looks wrong with it")
+    nothing = "Nothing else looks wrong with it" if doubts else "Nothing looks wrong with it"
+    print_title(console, "What is wrong with it" if findings else nothing)
     if findings:
         print_table(
             console,
