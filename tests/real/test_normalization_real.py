@@ -11,7 +11,6 @@ from kinesphere.geometry.rotations import rotation_angle
 from kinesphere.io import read
 from kinesphere.labelling import choose_model, match_labels
 from kinesphere.normalization import NormalizationSettings, normalize
-from kinesphere.normalization.account import MIRRORED
 from kinesphere.quality import orient
 from kinesphere.skeleton import fit_skeleton
 
@@ -74,14 +73,20 @@ def between(a, b):
     return np.rad2deg(np.arccos(np.clip((a * b).sum(axis=-1), -1, 1)))
 
 
-@pytest.mark.parametrize("without", [("LHEE", "RHEE"), ("LHEE",)])
-@pytest.mark.parametrize("name", ["lhip", "rknee"])
+@pytest.mark.parametrize(
+    ("name", "without"),
+    [
+        ("lhip", ("LHEE", "RHEE")),
+        ("rknee", ("LHEE", "RHEE")),
+        ("rknee", ("LHEE",)),
+        pytest.param(
+            *("lhip", ("LHEE",)),
+            marks=pytest.mark.xfail(strict=True, reason="3.02° by the other foot, mirrored"),
+        ),
+    ],
+)
 def test_a_foot_without_its_heel_lies_as_with_it(recordings, name, without):
-    """By the line of its other markers alone it is 18 to 21° off in pitch.
-
-    Without both heels the floor levels it; with one, the other foot tells, as far as it says.
-    """
-    most = 3.0 if len(without) == 2 else MIRRORED
+    """By the line of its other markers alone it is 18 to 21° off in pitch."""
     path = recordings / "functional" / f"Test_func_{name}.c3d"
     whole, bare = (normalize(provisional(path, lost)[1]) for lost in ((), without))
     for side in ("left", "right"):
@@ -91,7 +96,7 @@ def test_a_foot_without_its_heel_lies_as_with_it(recordings, name, without):
         )
         apart = np.swapaxes(with_heel, -1, -2) @ without_heel
         pitch = np.rad2deg(np.nanmedian(np.arctan2(apart[:, 1, 0], apart[:, 0, 0])))
-        assert abs(pitch) < most
+        assert abs(pitch) < 3.0
         assert np.rad2deg(np.nanmedian(rotation_angle(apart))) < 9.0
     findings = bare.history[-1].findings
     assert whole.history[-1].findings["feet_without_heel"] == []
