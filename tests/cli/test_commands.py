@@ -314,6 +314,8 @@ def test_files_of_a_solved_folder_tell_of_themselves(solved, call):
     for name in ("skeleton.json", "parameters.csv"):
         shown = json.loads(ok(call("info", folder / name, "--json")))
         assert shown["kind"] == "skeleton"
+        for joint in shown["joints"]:
+            assert len(joint["axes_sources"]) == joint["n_axes"]
         assert "left_knee to left_thigh" in ok(call("info", folder / name))
 
 

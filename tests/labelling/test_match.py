@@ -201,6 +201,13 @@ class TestTwoPeople:
         with pytest.raises(BadRecording, match=r"Ann \(100%\), Bob \(100%\); pick a subject"):
             match_labels(file, CMU)
 
+    def test_it_is_told_how_to_pick(self, rng, file):
+        with pytest.raises(BadRecording, match=r"\(--subject NAME\)$"):
+            match_labels(file, CMU)
+        both = recording_of(rng, (*CMU.labels, *prefixed("Bob", CMU.labels)))
+        with pytest.raises(BadRecording, match=r'\(--subject NAME, "" is who has no prefix\)$'):
+            match_labels(both, CMU)
+
     @pytest.mark.parametrize(("subject", "other"), [("Ann", "Bob"), ("Bob", "Ann")])
     def test_the_picked_one_is_kept_with_props_and_unlabelled(self, file, subject, other):
         matched = match_labels(file, CMU, subject)

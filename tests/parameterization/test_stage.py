@@ -20,6 +20,7 @@ from kinesphere.parameterization import (
     TwistSettings,
     parameterize,
 )
+from kinesphere.parameterization.joint_flags import twists_known
 from kinesphere.parameterization.reused import not_reused
 from kinesphere.synthetic import make_performance
 
@@ -374,6 +375,37 @@ def test_what_was_filled_stays_marked(performance):
     found = parameterize(replace(motion, flags=flags)).flags & JointFlag.FILLED
     assert_array_equal(np.flatnonzero(found[:, 0]), [5, 6, 7, 8])
     assert_array_equal(np.flatnonzero(found[:, 1]), [5, 6, 7, 8])
+
+
+def test_what_was_filled_beside_a_guess_tells_no_twist_either(performance):
+    motion = only(performance.motion, ["trunk", "left_thigh", "left_shank"])
+    flags = motion.flags.copy()
+    flags[5:9, 2] = PoseFlag.FILLED
+    flags[20:30, 2] = PoseFlag.TWIST_UNKNOWN
+    flags[24:27, 2] = PoseFlag.FILLED
+    flags[30:33, 2] = PoseFlag.FILLED
+    solved = parameterize(replace(motion, flags=flags))
+    guessed = np.r_[20:33]
+    assert_array_equal(np.flatnonzero(np.isnan(solved.twists[:, 1])), guessed)
+    assert_array_equal(np.flatnonzero(solved.flags[:, 1] & JointFlag.TWIST_UNKNOWN), guessed)
+    filled = np.r_[5:9, 24:27, 30:33]
+    assert_array_equal(np.flatnonzero(solved.flags[:, 1] & JointFlag.FILLED), filled)
+
+
+def test_a_twist_is_as_good_as_those_it_is_carried_over_from():
+    """Against the rule said frame by frame, on flags at random."""
+    rng = np.random.default_rng(8)
+    flags = rng.choice([0, 1, 4, 5, 5, 5], (300, 4)).astype(np.uint8)
+    known = twists_known(flags)
+    for limb in range(4):
+        course = flags[:, limb].tolist()
+        for frame, flag in enumerate(course):
+            ends = [flag]
+            if flag == PoseFlag.FILLED:
+                ends = [f for f in course[:frame][::-1] if f != PoseFlag.FILLED][:1]
+                ends += [f for f in course[frame:] if f != PoseFlag.FILLED][:1]
+            assert known[frame, limb] == (PoseFlag.TWIST_UNKNOWN not in ends)
+    assert twists_known(flags[:0]).shape == (0, 4)
 
 
 def test_gaps_change_nothing_elsewhere(performance):

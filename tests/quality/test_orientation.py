@@ -21,6 +21,9 @@ EXPORTS = [
 """All 48 ways to name and sign the axes of a file; half of them are mirror images."""
 
 
+FEET = ("ANK", "HEE", "TOE")
+
+
 def exported(recording, export, up=None):
     """Return the recording as a file with other axes would hold it, and what it says of up."""
     return replace(recording, markers=recording.markers @ export.T, up=up)
@@ -154,6 +157,24 @@ class TestAgainstTheFile:
         (said,) = (w for w in told["-y"].warnings if "upper end" in w)
         assert "set orientation.up to +y" in said
         assert not told["+y"].warnings
+
+    def test_knees_stand_in_for_feet_without_markers(self, statue, walker):
+        for person in (statue, walker):
+            kept = [k for k, label in enumerate(person.labels) if label[1:] not in FEET]
+            labels = tuple(person.labels[k] for k in kept)
+            file = replace(person, markers=person.markers[:, kept] * [1, -1, -1], labels=labels)
+            told = step(orient(replace(file, up="+y")))
+            assert (told.findings["up"], told.findings["up_from"]) == ("-y", "body")
+            assert "the head is along -y from the knees: up is -y" in told.warnings[0]
+            shanks = Segment("left_shank", ("LKNE",)), Segment("head", ("LFHD", "RFHD"))
+            model = TopologicalModel(
+                name="no feet",
+                segments=shanks[::-1],
+                joints=(JointModel("joint_01", "head", "left_shank"),),
+                root="head",
+            )
+            told = step(orient(replace(file, up="+y"), model))
+            assert "the head is along -y from the shanks: up is -y" in told.warnings[0]
 
     def test_it_does_so_above_any_floor(self, statue):
         file = replace(statue, markers=statue.markers + UP, up="-y")

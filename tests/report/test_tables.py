@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from kinesphere.data import JointFlag, PoseFlag, Step
-from kinesphere.report.axes_words import axes_in_detail
+from kinesphere.report.axes_words import axes_in_detail, origins_in_words
 from kinesphere.report.joint_table import chart_order, joint_rows
 from kinesphere.report.limb_table import limb_rows
 from kinesphere.report.step_cards import step_cards
@@ -177,3 +177,13 @@ def test_a_joint_that_cannot_come_apart_has_no_residual_and_no_part_in_the_media
     tile = {tile.name: tile for tile in tiles(changed)}["Joint centres"]
     assert tile.value == millimetres(float(np.median(told)))
     assert tile.aside.startswith(f"median residual of {len(told)}; ")
+
+
+def test_axes_of_several_origins_are_told_one_by_one():
+    assert origins_in_words(("body", "body"), ()) == "2 from body"
+    assert origins_in_words(("reused",), ("knee",)) == "1 reused from knee"
+    assert origins_in_words(("body", "movement"), ()) == "axis 1 from body, axis 2 from movement"
+    assert origins_in_words(("reused", "movement"), ("hip", None)) == (
+        "axis 1 reused from hip, axis 2 from movement"
+    )
+    assert origins_in_words((), ()) == ""

@@ -6,7 +6,7 @@ import numpy as np
 
 from kinesphere.cli.console import print_pairs, print_table, print_title, stdout
 from kinesphere.data import Skeleton, TopologicalModel
-from kinesphere.report import number_in_words
+from kinesphere.report import number_in_words, origins_in_words
 
 
 def describe_model(model: TopologicalModel) -> dict[str, Any]:
@@ -79,6 +79,7 @@ def describe_skeleton(skeleton: Skeleton) -> dict[str, Any]:
                 "n_axes": joint.n_axes,
                 "axes_from": joint.axes_source,
                 "axes_sources": list(joint.axes_sources),
+                "axes_reused_from": [name or None for name in joint.axes_reused_from],
             }
             for joint in skeleton.joints
         ],
@@ -104,7 +105,7 @@ def show_skeleton(summary: dict[str, Any]) -> None:
                 f"{joint['name']} to {joint['parent']}",
                 number_in_words(joint["residual_mm"], "mm"),
                 joint["observability"],
-                f"{joint['n_axes']} from {joint['axes_from']}" if joint["n_axes"] else "",
+                origins_in_words(joint["axes_sources"], joint["axes_reused_from"]),
             )
         )
     print_table(console, ("limb", "length", "joint", "residual", "centre", "axes"), rows, "lrlrll")

@@ -88,5 +88,9 @@ def choose_subject(groups: Groups, model: TopologicalModel) -> str:
     covered = [subject for subject in wearing if shares[subject] >= COVERED] or wearing
     if len(covered) > 1:
         people = ", ".join(f"{s or '(no prefix)'} ({shares[s]:.0%})" for s in covered)
-        raise BadRecording(f"several subjects wear layout {model.name}: {people}; pick a subject")
+        nameless = ', "" is who has no prefix' if "" in covered else ""
+        raise BadRecording(
+            f"several subjects wear layout {model.name}: {people}; pick a subject "
+            f"(--subject NAME{nameless})"
+        )
     return covered[0] if covered else next(iter(groups))

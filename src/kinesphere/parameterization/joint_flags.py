@@ -14,14 +14,33 @@ OUTLYING = 6.0  # robust standard deviations
 LEAP = np.pi / 2  # rad between frames; the other branch is about half a turn of twist away
 
 
+def twists_known(flags: Codes) -> Mask:
+    """Return where something tells a limb's twist, PoseFlag (n_frames, n_limbs) → bool.
+
+    A filled pose has its twist from the poses before and behind it: where either of these is a
+    guess, it is one, too.
+    """
+    guessed = flags == PoseFlag.TWIST_UNKNOWN
+    filled = flags == PoseFlag.FILLED
+    frames = np.arange(len(flags))[:, None]
+    before = np.maximum.accumulate(np.where(filled, -1, frames), axis=0)
+    behind = np.where(filled, len(flags), frames)
+    behind = np.minimum.accumulate(behind[::-1], axis=0)[::-1]
+    for ends in (before, behind):
+        held = np.take_along_axis(guessed, np.clip(ends, 0, max(len(flags) - 1, 0)), axis=0)
+        guessed = guessed | (filled & held)
+    return np.asarray(~guessed)
+
+
 def flags_of(
     motion: Motion,
     j: int,
     solved: JointAngles,
     fit: JointFit,
+    twist_known: Mask,
     settings: ParameterizationSettings,
 ) -> Codes:
-    """Return the JointFlags of joint ``j``, (n_frames,) uint8."""
+    """Return the JointFlags of joint ``j``, (n_frames,) uint8; ``twist_known`` of its child."""
     unseen = np.isnan(solved.angles[:, len(fit.axes) - 1])
     flags = np.where(unseen, JointFlag.UNSEEN, 0)
     with np.errstate(invalid="ignore"):
@@ -32,7 +51,7 @@ def flags_of(
         flags |= np.where(edge | leaps(solved), JointFlag.SINGULAR, 0)
     parent, child = motion.flags[:, motion.skeleton.parents[j + 1]], motion.flags[:, j + 1]
     filled = (parent == PoseFlag.FILLED) | (child == PoseFlag.FILLED)
-    flags |= np.where(~unseen & (child == PoseFlag.TWIST_UNKNOWN), JointFlag.TWIST_UNKNOWN, 0)
+    flags |= np.where(~unseen & ~twist_known, JointFlag.TWIST_UNKNOWN, 0)
     flags |= np.where(~unseen & filled, JointFlag.FILLED, 0)
     flags |= np.where(_torn(motion, j), JointFlag.DISLOCATED, 0)
     return flags.astype(np.uint8)

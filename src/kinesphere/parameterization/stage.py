@@ -10,7 +10,6 @@ from kinesphere.data import (
     Json,
     Motion,
     Parameters,
-    PoseFlag,
     Skeleton,
     Step,
     given_away,
@@ -22,7 +21,7 @@ from kinesphere.parameterization.calibration_windows import windows_beyond, wind
 from kinesphere.parameterization.coupling import neighbours_of
 from kinesphere.parameterization.joint_angles import solve_joint
 from kinesphere.parameterization.joint_fit import JointFit
-from kinesphere.parameterization.joint_flags import flags_of
+from kinesphere.parameterization.joint_flags import flags_of, twists_known
 from kinesphere.parameterization.measures import (
     lever,
     mid_point_residuals,
@@ -90,7 +89,7 @@ def parameterize(
     flags = np.zeros((n, n_joints), dtype=np.uint8)
     moving = np.zeros((n, n_joints), dtype=bool)
     human = human_plan(skeleton)
-    known = motion.flags != PoseFlag.TWIST_UNKNOWN
+    known = twists_known(motion.flags)
     # a twist nobody knows is taken out of the poses, outward
     world = motion.rotations if known.all() else np.array(motion.rotations)
     joints: list[Joint] = []
@@ -120,7 +119,7 @@ def parameterize(
         angles[:, j], twists[:, j] = solved.angles, solved.twists
         residuals[:, j] = mid_point_residuals(rotations, rebuilt, mid_point)
         moving[:, j] = view.movement.moving
-        flags[:, j] = flags_of(motion, j, solved, fit, settings)
+        flags[:, j] = flags_of(motion, j, solved, fit, twist_known, settings)
         unknown = np.flatnonzero(~twist_known & np.isfinite(rebuilt[:, 0, 0]))
         if len(unknown):
             world[unknown, j + 1] = world[unknown, parent] @ rebuilt[unknown]

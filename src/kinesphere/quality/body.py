@@ -7,6 +7,7 @@ up from down and left from right it does not matter exactly where a marker sits.
 
 import re
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,6 +36,15 @@ ENOUGH_FRAMES = 6000
 """Frames, evenly spread, that tell which way is up, how tall and which way round a body is."""
 
 _SIDED = re.compile(r"(?:(?P<side>[LR])(?:EFT|IGHT)?[_. ]?)?(?P<core>.*)", re.DOTALL)
+
+
+class LongAxes(NamedTuple):
+    """Which way bodies stand."""
+
+    towards_head: Array
+    """(n, 3) unit vectors from the feet to the head, one per person and frame seen."""
+    below: str
+    """What they begin at, in words: ``feet``, or what stands in for them."""
 
 
 class Body:
@@ -106,38 +116,45 @@ def find_bodies(recording: Recording) -> tuple[Body, ...]:
 
 def find_long_axes(
     recording: Recording, model: TopologicalModel | None, bodies: Iterable[Body]
-) -> Array:
-    """Return unit vectors from the feet to the head, (n, 3): one per person and frame seen.
+) -> LongAxes:
+    """Return which way bodies stand, one vector per person and frame seen.
 
     Feet and head are the model's segments of that name where the recording has their markers, else
-    what the customary labels say; shoulders, then waist stand in for a head without markers.
+    what the customary labels say; shoulders, then waist stand in for a head without markers, shanks
+    or knees for feet without.
     """
-    axes = [_segments_axis(recording, model)] if model is not None else []
-    if not any(axis is not None for axis in axes):
-        axes = [_named_axis(body) for body in bodies]
-    found = [unit(axis) for axis in axes if axis is not None]
-    together: Array = np.concatenate([*found, np.empty((0, 3))])
-    return together[np.isfinite(together).all(axis=1)]
+    found = [] if model is None else [_segments_axis(recording, model)]
+    if not any(way is not None for way in found):
+        found = [_named_axis(body) for body in bodies]
+    ways = [way for way in found if way is not None]
+    together: Array = np.concatenate([*(unit(way) for way, _ in ways), np.empty((0, 3))])
+    below = tuple(dict.fromkeys(end for _, end in ways))
+    return LongAxes(together[np.isfinite(together).all(axis=1)], " or ".join(below))
 
 
-def _segments_axis(recording: Recording, model: TopologicalModel) -> Array | None:
+def _segments_axis(recording: Recording, model: TopologicalModel) -> tuple[Array, str] | None:
     owned = {s.name: [m for m in s.markers if m in recording.labels] for s in model.segments}
     upper = owned.get("head") or owned.get("trunk")
-    lower = [m for foot in ("left_foot", "right_foot") for m in owned.get(foot, ())]
-    if not upper or not lower:
-        return None
-    ends = [
-        mean_seen(recording.markers[:, recording.columns(tuple(end))]) for end in (upper, lower)
-    ]
-    return ends[0] - ends[1]
+    for part, said in (("foot", "feet"), ("shank", "shanks")):
+        lower = [m for side in ("left", "right") for m in owned.get(f"{side}_{part}", ())]
+        if upper and lower:
+            high, low = (
+                mean_seen(recording.markers[:, recording.columns(tuple(end))])
+                for end in (upper, lower)
+            )
+            return high - low, said
+    return None
 
 
-def _named_axis(body: Body) -> Array | None:
+def _named_axis(body: Body) -> tuple[Array, str] | None:
     waist = (*WAIST_FRONT, *WAIST_BACK, *HIPS)
     ends = (body.middle(*names) for names in (HEAD, SHOULDERS, waist))
     upper = next((end for end in ends if end is not None), None)
-    lower = body.middle(*TOES, *HEELS, *ANKLES)
-    return None if upper is None or lower is None else upper - lower
+    for names, said in (((*TOES, *HEELS, *ANKLES), "feet"), (KNEES, "knees")):
+        lower = body.middle(*names)
+        if upper is not None and lower is not None:
+            return upper - lower, said
+    return None
 
 
 def labelled_columns(recording: Recording) -> list[int]:

@@ -48,7 +48,9 @@ def judge_up(evidence: Evidence, field: UpAxis | None, wanted: UpAxis | None) ->
     seen, strong = _body(evidence)
     if wanted is not None:
         doubt = seen is not None and strong and seen != wanted
-        said = f"up is {wanted} as asked, although the head is along {seen} from the feet"
+        said = (
+            f"up is {wanted} as asked, although the head is along {seen} from the {evidence.below}"
+        )
         return Judgement(wanted, "user", (said,) if doubt else ())
     if seen is None:
         if field is None:
@@ -57,14 +59,14 @@ def judge_up(evidence: Evidence, field: UpAxis | None, wanted: UpAxis | None) ->
     if seen == field:
         return Judgement(field, "file")
     share = evidence.upright[DIRECTIONS.index(seen)]
-    found = f"in {share:.0%} of the frames the head is along {seen} from the feet"
+    found = f"in {share:.0%} of the frames the head is along {seen} from the {evidence.below}"
     if field is None:
         said = f"the file names no up axis, and only {found}, with a steady floor: up is {seen}"
         if strong:
             said = (
                 f"the file names no up axis and no floor shows it: up is {seen} because the head "
-                "is there from the feet; set orientation.up if this person lies, or stands on the "
-                "head, all the time"
+                f"is there from the {evidence.below}; set orientation.up if this person lies, or "
+                "stands on the head, all the time"
             )
             return Judgement(seen, "body", () if _has_floor(evidence, seen) else (said,))
         return Judgement(seen, "body", (said,))

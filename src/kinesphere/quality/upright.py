@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinesphere.data import DIRECTIONS, Array, Recording, vector_from_direction
-from kinesphere.quality.body import labelled_columns
+from kinesphere.quality.body import LongAxes, labelled_columns
 
 WITHIN = 0.8
 """Cosine of 37°: a person this close to a direction is upright along it; no two directions
@@ -30,28 +30,32 @@ class Evidence:
     """(6,) height of the lowest marker along it, median over frames, in the same sizes."""
     extent: Array
     """(3,) median extent along each axis, in the same sizes."""
+    below: str = "feet"
+    """What the head is seen from, in words."""
 
 
-def find_evidence(recording: Recording, long_axes: Array) -> Evidence:
+def find_evidence(recording: Recording, long_axes: LongAxes) -> Evidence:
     """Weigh the six directions.
 
     Parameters
     ----------
-    long_axes : (n, 3)
-        Unit vectors from feet to head, one per person and frame.
+    long_axes
+        Which way bodies stand.
     """
     columns = labelled_columns(recording) or list(range(recording.n_markers))
     someone = recording.seen[:, columns].any(axis=1)
     points = recording.markers[someone][:, columns]
     if len(points) == 0:
         unknown = np.full(6, np.nan)
-        return Evidence(unknown, unknown, unknown, unknown[:3])
+        return Evidence(unknown, unknown, unknown, unknown[:3], long_axes.below)
     low, high = np.nanmin(points, axis=1), np.nanmax(points, axis=1)  # (n_frames, 3)
     extent = np.median(high - low, axis=0)
     travel = high.max(axis=0) - low.min(axis=0)
     size = float(np.linalg.norm(extent)) or float(np.linalg.norm(travel)) or 1.0
     ends = np.stack([low, -high], axis=2).reshape(len(points), 6)  # the order of DIRECTIONS
     spread = np.percentile(ends, 90, axis=0) - np.percentile(ends, 10, axis=0)
-    along = long_axes @ np.array([vector_from_direction(d) for d in DIRECTIONS]).T
-    upright = (along > WITHIN).mean(axis=0) if len(long_axes) else np.full(6, np.nan)
-    return Evidence(upright, spread / size, np.median(ends, axis=0) / size, extent / size)
+    ways, below = long_axes
+    along = ways @ np.array([vector_from_direction(d) for d in DIRECTIONS]).T
+    upright = (along > WITHIN).mean(axis=0) if len(ways) else np.full(6, np.nan)
+    floor = np.median(ends, axis=0) / size
+    return Evidence(upright, spread / size, floor, extent / size, below)

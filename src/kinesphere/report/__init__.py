@@ -1,5 +1,6 @@
 """One self-contained page that shows what was found."""
 
+from kinesphere.report.axes_words import origins_in_words as origins_in_words
 from kinesphere.report.comparison import comparison_html as comparison_html
 from kinesphere.report.joint_table import JointRow as JointRow
 from kinesphere.report.joint_table import joint_rows as joint_rows

@@ -1,8 +1,26 @@
-"""How well each axis of a joint is determined, in words."""
+"""Where each axis of a joint comes from and how well it is determined, in words."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from kinesphere.data import Json, Step
+
+
+def origins_in_words(sources: Sequence[str], reused_from: Sequence[str | None]) -> str:
+    """Return where a joint's axes come from; axis by axis where they differ, empty without any.
+
+    Parameters
+    ----------
+    sources, reused_from
+        Of each axis, as `Joint.axes_sources` and `Joint.axes_reused_from` tell them; the latter
+        empty where none is reused.
+    """
+    origins = [
+        f"reused from {name}" if name else f"from {source}"
+        for source, name in zip(sources, reused_from or [""] * len(sources), strict=True)
+    ]
+    if len(set(origins)) <= 1:
+        return f"{len(origins)} {origins[0]}" if origins else ""
+    return ", ".join(f"axis {k} {origin}" for k, origin in enumerate(origins, start=1))
 
 
 def axes_in_detail(name: str, history: Iterable[Step]) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 
 from kinesphere.data import Joint, JointFlag, Solution
 from kinesphere.data.sticks import side_of
-from kinesphere.report.axes_words import axes_in_detail
+from kinesphere.report.axes_words import axes_in_detail, origins_in_words
 from kinesphere.report.limb_table import other_side
 from kinesphere.report.tiles import rms
 from kinesphere.report.wording import degrees_span, in_words, millimetres, number_in_words
@@ -72,7 +72,7 @@ def _joint_row(solution: Solution, j: int, joint: Joint) -> JointRow:
     flags = parameters.flags[:, j]
     known = {flag: (flags & flag).astype(bool).mean() for flag in JointFlag if (flags & flag).any()}
     uncertainty = joint.axes_uncertainty
-    axes = _origins(joint)
+    axes = origins_in_words(joint.axes_sources, joint.axes_reused_from) or "–"
     if uncertainty is not None and np.isfinite(uncertainty).any():
         axes += f", ± {np.rad2deg(np.nanmax(uncertainty)):.1f}°"
     return JointRow(
@@ -98,21 +98,6 @@ def _joint_row(solution: Solution, j: int, joint: Joint) -> JointRow:
         ),
         trust=_trust(joint, known.get(JointFlag.UNREACHABLE, 0.0)),
     )
-
-
-def _origins(joint: Joint) -> str:
-    """Return where a joint's axes come from, in words."""
-    if joint.axes_source is None:
-        return "–"
-    origins = [
-        f"reused from {name}" if name else f"from {source}"
-        for source, name in zip(
-            joint.axes_sources, joint.axes_reused_from or [""] * joint.n_axes, strict=True
-        )
-    ]
-    if len(set(origins)) == 1:
-        return f"{joint.n_axes} {origins[0]}"
-    return ", ".join(f"axis {k} {origin}" for k, origin in enumerate(origins, start=1))
 
 
 def _trust(joint: Joint, unreachable: float) -> str:
