@@ -160,12 +160,12 @@ maximum likelihood for somebody who knows that every angle is made of three freq
 are, though not which, and who knows what the errors are; nobody can do better for long.
 
 `universal-joint` takes each angle as a process in time: about the right axes the three go their own
-ways, about wrong ones they are mixtures. It has two descriptions of them, smooth processes
-(`axes/free_motion.py`) and sums of rhythms (`axes/spectra.py`), and takes the axes of the likelier.
-Neither knows how these angles were made, but the second suits them; *no rhythm* is the same band of
-frequencies as noise, of which nothing returns: there less can be told. That real people's angles go
-their own ways is an assumption; where a person couples them (and daily motion does), the axes are
-those of the coupling.
+ways, about wrong ones they are mixtures. It has three descriptions of them, smooth processes
+(`axes/processes.py`), such that rest in some movements while others go on, and sums of rhythms
+(`axes/spectra.py`), and takes the axes of the likeliest. None knows how these angles were made, but
+the last suits them; *no rhythm* is the same band of frequencies as noise, of which nothing returns:
+there less can be told. That real people's angles go their own ways is an assumption; where a person
+couples them (and daily motion does), the axes are those of the coupling.
 """
 
 
