@@ -97,10 +97,9 @@ def by_size(
 ) -> None:
     """Add what a stationary covariance tells of its deviation and rate; begin anew with it."""
     middle = (by_still[1, 1] - by_still[0, 2] - by_still[2, 0]) / 3.0
-    outer = by_still[2, 2]
-    size = by_still[0, 0] + middle * rate**2 + outer * rate**4
+    size = by_still[0, 0] + middle * rate**2  # how accelerations vary no angle shows
     by_deviation[k] += 2.0 * deviation * size
-    by_rates[k] += deviation**2 * (2.0 * middle * rate + 4.0 * outer * rate**3)
+    by_rates[k] += deviation**2 * 2.0 * middle * rate
     by_still[:] = 0.0
 
 
