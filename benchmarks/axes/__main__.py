@@ -20,6 +20,7 @@ from benchmarks.axes import (
     free_served,
     halves_alone,
     held,
+    held_noise,
     normalization,
     one_wide,
     outlying,
@@ -132,7 +133,12 @@ SECTIONS: Mapping[str, Callable[[Run, Path], dict[str, Any]]] = {
     "floor": lambda run, _: {
         "floor": floor.summary(run("floor of free motion", floor.run, floor.TASKS))
     },
-    "held": lambda run, _: {"held": held.summary(run("held by free motion", held.run, held.TASKS))},
+    "held": lambda run, _: {
+        "held": held.summary(run("held by free motion", held.run, held.TASKS))
+        | held.summary(
+            run("held without rhythm", held_noise.run, held_noise.TASKS), held_noise.TASKS
+        )
+    },
 }
 
 

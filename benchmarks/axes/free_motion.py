@@ -157,15 +157,16 @@ Two axes and a twist rebuild every pose, so no pose says anything about the axes
 what the angles are like in time. Rows in *italics* that start from the truth are yardsticks, not
 methods. *Least twist*: the axes that need least twist frame by frame. *What the data hold*: axes of
 maximum likelihood for somebody who knows that every angle is made of three frequencies, as these
-are, though not which, and who knows what the errors are; nobody can do better for long.
+are, though not which, and who knows what the errors are; nobody can do better for long. Where there
+is no rhythm: for somebody who knows the band of every angle's noise, its size and the errors.
 
 `universal-joint` takes each angle as a process in time: about the right axes the three go their own
-ways, about wrong ones they are mixtures. It has two descriptions of them, smooth processes
-(`axes/free_motion.py`) and sums of rhythms (`axes/spectra.py`), and takes the axes of the likelier.
-Neither knows how these angles were made, but the second suits them; *no rhythm* is the same band of
-frequencies as noise, of which nothing returns: there less can be told. That real people's angles go
-their own ways is an assumption; where a person couples them (and daily motion does), the axes are
-those of the coupling.
+ways, about wrong ones they are mixtures. It has three descriptions of them, smooth processes
+(`axes/processes.py`), such that rest in some movements while others go on, and sums of rhythms
+(`axes/spectra.py`), and takes the axes of the likeliest. None knows how these angles were made, but
+the last suits them; *no rhythm* is the same band of frequencies as noise, of which nothing returns:
+there less can be told. That real people's angles go their own ways is an assumption; where a person
+couples them (and daily motion does), the axes are those of the coupling.
 """
 
 

@@ -1,5 +1,6 @@
 """How much free motion holds for somebody who knows what it is made of."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -90,11 +91,13 @@ def _waves(times: Array, frequencies: Array) -> Array:
     return np.concatenate([np.sin(turns), np.cos(turns)], axis=1)
 
 
-def summary(results: list[tuple[list[float], list[float]]]) -> dict[str, Any]:
+def summary(
+    results: list[tuple[list[float], list[float]]], tasks: Sequence[tuple[str, int]] = TASKS
+) -> dict[str, Any]:
     """Return motion → noise → statistics; with them the median of the bounds, deg."""
     table: dict[str, Any] = {}
-    for motion in dict.fromkeys(name for name, _ in TASKS):
-        mine = [r for (name, _), r in zip(TASKS, results, strict=True) if name == motion]
+    for motion in dict.fromkeys(name for name, _ in tasks):
+        mine = [r for (name, _), r in zip(tasks, results, strict=True) if name == motion]
         bounds = np.array([bound for _, bound in mine])
         told = cell([errors for errors, _ in mine])
         table[motion] = {NOISE: told | {"bound_deg": float(np.median(bounds.mean(axis=1)))}}

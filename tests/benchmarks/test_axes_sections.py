@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from benchmarks.axes import __main__ as main
-from benchmarks.axes import floor, free_motion, held, segments
+from benchmarks.axes import floor, free_motion, held, held_noise, segments
 from benchmarks.axes.angles import run_cross_talk
 from benchmarks.axes.estimators import run
-from benchmarks.axes.generator import RATE
+from benchmarks.axes.generator import BAND, RATE
 from benchmarks.axes.normalization import POSES, PROTOCOLS, RULES, Protocol, record, told
 from benchmarks.axes.papers_metrics import joint_rows, measured_rows, pooled, with_random_axes
 from benchmarks.axes.repeatability import (
@@ -222,6 +222,24 @@ def test_what_free_motion_holds_is_its_noise_over_its_rhythms():
     errors, bounds = held.run("20 s, ±10° of twist", 3000)
     assert 0.2 < min(bounds) <= max(bounds) < 1.5  # 1° of errors with 0.4 s of memory in 20 s
     assert max(errors) < 4 * max(bounds)
+
+
+@pytest.mark.slow
+def test_noise_holds_less_than_rhythms():
+    motion = "60 s, ±10° of twist, no rhythm"
+    errors, bounds = held_noise.run(motion, 3000)
+    _, rhythmic = held.run("60 s, ±10° of twist", 3000)
+    assert 2 * max(rhythmic) < min(bounds) <= max(bounds) < 3.0
+    assert max(errors) < 3 * max(bounds)
+
+
+def test_the_band_is_what_noise_is_drawn_from():
+    joint = free_motion.make("60 s, ±10° of twist, no rhythm", "clean", 3000)
+    own = held_noise._angles_covariance(joint)
+    assert_allclose(own[:, 5, 5], joint.angles.var(axis=0))
+    values = np.linalg.eigvalsh(own[0])
+    inside = 2 * (BAND[1] - BAND[0]) * 60.0  # waves that a band holds in so long a time
+    assert values[-round(inside) :].sum() > 0.97 * values.sum()
 
 
 def test_motion_without_rhythm_keeps_its_band():

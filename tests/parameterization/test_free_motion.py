@@ -2,24 +2,30 @@
 
 import numpy as np
 import pytest
-from benchmarks.axes.generator import CONES, NOISES, RATE, make_free_motion
-from benchmarks.axes.measures import line_angles
+from benchmarks.axes.generator import CONES, NOISES, RATE, make_calibration, make_free_motion
+from benchmarks.axes.measures import axis_errors, line_angles
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from kinesphere.geometry.rotations import rotation_about, rotation_angle
 from kinesphere.parameterization.angles import two_axis_angles
-from kinesphere.parameterization.axes import find_axes, free_motion
+from kinesphere.parameterization.axes import find_axes, processes
 from kinesphere.parameterization.axes.free_motion import (
     MOST_FRAMES,
     SPACING,
-    TRIAL_FRAMES,
+    AxesFit,
     FreeMotion,
-    likeliest_axes,
 )
 from kinesphere.parameterization.axes.joint_kernels import angles_and_loads, constraint_residuals
-from kinesphere.parameterization.axes.kernels import surprise
-from kinesphere.parameterization.samples import JointSamples
+from kinesphere.parameterization.axes.movements import Movements
+from kinesphere.parameterization.axes.process_kernels import blank_tape
+from kinesphere.parameterization.axes.process_slopes import surprise
+from kinesphere.parameterization.axes.processes import (
+    TRIAL_FRAMES,
+    likeliest_axes,
+    likeliest_with_rests,
+)
+from kinesphere.parameterization.samples import JointSamples, runs
 from kinesphere.parameterization.settings import AngleSettings, AxesSettings
 
 ROUNDING = 1e-9
@@ -31,13 +37,18 @@ def matern(apart, deviation, memory):
     return deviation**2 * (1 + r + r**2 / 3) * np.exp(-r)
 
 
-def dense(angles, loads, times, deviations, memories, error, error_memory, floor):
+def dense(
+    angles, loads, times, movement, deviations, memories, error, error_memory, posture, floor
+):
     """Return the same from the covariance of everything with everything."""
     apart = np.abs(times[:, None] - times)
+    together = movement[:, None] == movement
+    shifts = 1.0 * np.minimum(movement[:, None], movement)  # of a mean that two frames share
     n = len(times)
     covariance = np.zeros((n, 3, n, 3))
     for k in range(3):
-        covariance[:, k, :, k] = matern(apart, deviations[k], memories[k]) + VAGUE
+        own = together * matern(apart, deviations[movement, k], memories[k])
+        covariance[:, k, :, k] = own + VAGUE + posture**2 * shifts
     shared = error**2 * np.exp(-apart / error_memory)
     covariance += np.einsum("aki,bli,ab->akbl", loads, loads, shared)
     whole = covariance.reshape(3 * n, 3 * n) + floor * np.eye(3 * n)
@@ -45,22 +56,62 @@ def dense(angles, loads, times, deviations, memories, error, error_memory, floor
     return 0.5 * (x @ np.linalg.solve(whole, x) + np.linalg.slogdet(whole)[1])
 
 
-def test_the_filter_is_the_likelihood_of_gaussian_processes(rng):
+@pytest.fixture
+def told(rng):
+    """Return what a filter is told: gaps alike and unlike, three movements."""
     n = 23
     times = np.cumsum(rng.uniform(0.02, 0.4, n))
-    times[5:9] = times[4] + 0.1 * np.arange(1, 5)  # gaps alike and unlike
+    times[5:9] = times[4] + 0.1 * np.arange(1, 5)
     times[9:] += 0.5
-    told = (
+    return (
         rng.normal(size=(n, 3)),
         rng.normal(size=(n, 3, 3)),
-        np.array([0.3, 0.5, 0.1]),
+        times,
+        np.repeat([0, 1, 2], [7, 9, 7]),
+        rng.uniform(0.1, 0.6, size=(3, 3)),
         np.array([0.4, 0.9, 0.2]),
         0.05,
         0.3,
+        0.2,
         0.01,
     )
-    fast = surprise(*told[:2], np.diff(times), *told[2:])
-    assert fast == pytest.approx(dense(*told[:2], times, *told[2:]), rel=ROUNDING)
+
+
+def filtered(told):
+    gaps = np.diff(told[2])
+    return surprise(*told[:2], gaps, *told[3:], blank_tape(len(told[0])))
+
+
+def test_the_filter_is_the_likelihood_of_gaussian_processes(told):
+    assert filtered(told)[0] == pytest.approx(dense(*told), rel=ROUNDING)
+    one = (*told[:3], 0 * told[3], *told[4:])
+    assert filtered(one)[0] == pytest.approx(dense(*one), rel=ROUNDING)
+
+
+def test_slopes_are_differences_of_the_likelihood(told):
+    _, *slopes, others = filtered(told)
+    step = 1e-6
+
+    def rise(at, where):
+        ends = []
+        for by in (step, -step):
+            moved = list(told)
+            moved[at] = np.array(moved[at], dtype=float)
+            moved[at][where] += by
+            ends.append(dense(*moved))
+        return (ends[0] - ends[1]) / (2 * step)
+
+    for at, slope in zip((0, 1, 4, 5), slopes, strict=True):
+        expected = [rise(at, where) for where in np.ndindex(slope.shape)]
+        assert_allclose(slope.ravel(), expected, rtol=1e-5, atol=1e-5)
+    assert_allclose(others, [rise(at, ()) for at in (6, 7, 8)], rtol=1e-5, atol=1e-5)
+
+
+def test_a_tape_can_be_used_again(told):
+    tape = blank_tape(len(told[0]))
+    once, again = (surprise(*told[:2], np.diff(told[2]), *told[3:], tape) for _ in range(2))
+    for first, second in zip(once, again, strict=True):
+        assert_allclose(first, second, rtol=0, atol=0)
 
 
 def samples_of(joint):
@@ -190,21 +241,105 @@ def test_loads_are_what_small_errors_do_to_the_angles(free, side):
     assert unit == pytest.approx(np.log(np.maximum(determinant, 0.05)).sum(), rel=1e-6)
 
 
-def test_the_cost_is_the_posterior_of_poses(free):
+@pytest.mark.parametrize("resting", [False, True])
+def test_the_cost_is_the_posterior_of_poses(free, resting):
     """Densities of processes, the unit of poses, what is out of reach, and what is usual."""
     motion, axes = free
-    gaps = np.round(np.diff(motion.times), 6)
-    logs = free_motion.USUAL + np.linspace(-1, 1, 8) * free_motion.FACTORS
+    n, count = len(motion.times), 10 if resting else 8
+    movements = Movements.one(n)
+    if resting:
+        moving = np.array([[True, False, True], [False, True, False]])
+        movements = Movements(np.repeat([0, 1], [n // 2, n - n // 2]), moving)
+    unusual = np.linspace(-1, 1, count)
+    logs = processes.USUAL[:count] + unusual * processes.FACTORS[:count]
     angles, loads, excess, unit = angles_and_loads(
         motion.rotations, axes[0], axes[1], motion.reference, motion.long_axis, 0.05
     )
     sizes = np.exp(logs)
-    told = dense(angles, loads, motion.times, sizes[:3], sizes[3:6], sizes[6], sizes[7], 0.002**2)
+    deviations, posture = sizes[None, :3], 0.0
+    if resting:
+        posture = sizes[9]
+        deviations = np.array([[sizes[0], sizes[8], sizes[2]], [sizes[8], sizes[1], sizes[8]]])
+    told = dense(
+        angles,
+        loads,
+        motion.times,
+        movements.of_frame,
+        deviations,
+        sizes[3:6],
+        sizes[6],
+        sizes[7],
+        posture,
+        0.002**2,
+    )
     assert excess.max() > 0.02
     out = 0.5 * ((excess / 0.02) ** 2).sum()
-    prior = 0.5 * (np.linspace(-1, 1, 8) ** 2).sum()
-    cost = free_motion._cost(motion, gaps, axes, logs)
+    prior = 0.5 * (unusual**2).sum() + resting * 6 * np.log(2)
+    cost, slopes = processes._cost_along(
+        motion, movements, axes, blank_tape(n), np.concatenate([np.zeros(4), logs])
+    )
     assert cost == pytest.approx(told + unit + out + prior, rel=1e-6)
+    assert len(slopes) == 4 + count
+
+
+def test_slopes_of_the_cost_are_its_differences(rng):
+    joint = make_free_motion(rng, CONES["90°"], NOISES["OU 1°"], twist=10.0, seconds=4.0)
+    times = np.arange(len(joint.rotations)) / RATE
+    motion = FreeMotion(joint.rotations, times, joint.long_axis, joint.rest).thinned()
+    n = len(motion.times)
+    moving = np.array([[True, False, True], [False, True, True]])
+    movements = Movements(np.repeat([0, 1], [n // 2, n - n // 2]), moving)
+    v = np.concatenate([0.1 * rng.normal(size=4), processes.USUAL])
+
+    def told(at):
+        return processes._cost_along(motion, movements, joint.axes, blank_tape(n), at)
+
+    step = 1e-5
+    differences = [(told(v + by)[0] - told(v - by)[0]) / (2 * step) for by in step * np.eye(len(v))]
+    assert_allclose(told(v)[1], differences, rtol=1e-3, atol=1e-2)
+
+
+def test_movements_end_at_rests_and_tell_what_moves():
+    times = np.concatenate([np.arange(20), 40 + np.arange(20), 80 + np.arange(20)]) * 0.1
+    wave = np.sin(np.arange(20))
+    angles = np.zeros((60, 3))
+    angles[:20, 0] = angles[20:40, 1] = wave
+    angles[40:, :2] = 0.8 * wave[:, None]
+    angles[:, 2] = 0.01 * np.tile(wave, 3)
+    movements = Movements.by_rests(times, angles)
+    assert_allclose(movements.of_frame, np.repeat([0, 1, 2], 20))
+    assert movements.moving.tolist() == [[True, False, True], [False, True, True], [True] * 3]
+    assert movements.resting
+    assert not Movements.by_rests(times[:20], angles[:20]).resting
+    assert movements.surprise == pytest.approx(9 * np.log(2))
+    assert Movements.one(5).surprise == 0.0
+
+
+def test_where_no_angle_rests_nothing_is_tried(rng):
+    joint = make_free_motion(rng, CONES["90°"], NOISES["OU 1°"], seconds=10.0)
+    times = np.arange(len(joint.rotations)) / RATE
+    motion = FreeMotion(joint.rotations, times, joint.long_axis, joint.rest).thinned()
+    smooth = AxesFit(joint.axes, 0.0, processes.USUAL[:8])
+    assert likeliest_with_rests(motion, smooth) is smooth
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("noise", ["iid 3°", "OU 1°"])
+def test_one_axis_at_a_time_tells_axes_as_well_as_its_phases(rng, noise):
+    """Who moves about one axis at a time is no process that goes on as it is used to."""
+    errors = []
+    for seed in rng.integers(2**31, size=3):
+        joint = make_calibration(np.random.default_rng(seed), CONES["90°"], NOISES[noise])
+        moving = runs(joint.moving)
+        samples = samples_of(joint).with_phases(moving)
+        found = (
+            find_axes(samples, 2, AxesSettings(method=method))
+            for method in ("universal-joint", "phase-log-pca")
+        )
+        errors.append([axis_errors(axes, joint.axes).mean() for axes in found])
+    free, phases = np.mean(errors, axis=0)
+    assert free < 1.3 * phases + 0.2  # deg
+    assert free < 1.5
 
 
 def test_starts_are_told_apart_by_few_frames(rng, monkeypatch):
@@ -213,11 +348,12 @@ def test_starts_are_told_apart_by_few_frames(rng, monkeypatch):
     motion = FreeMotion(joint.rotations, times, joint.long_axis, joint.rest)
     seen = []
 
-    def descend(few, start, steps):
+    def descend(few, start, steps, logs=None):
         seen.append((len(few.times), steps))
-        return free_motion.AxesFit(start, float(len(seen)))
+        assert (logs is None) == (steps == 15)  # the last goes on from the best
+        return AxesFit(start, float(len(seen)), processes.USUAL[:8])
 
-    monkeypatch.setattr(free_motion, "_descend", descend)
+    monkeypatch.setattr(processes, "_descend", descend)
     likeliest_axes(motion, [joint.axes, joint.axes[::-1]])
     assert seen == [(TRIAL_FRAMES, 15), (TRIAL_FRAMES, 15), (600, 80)]
     assert TRIAL_FRAMES <= 300

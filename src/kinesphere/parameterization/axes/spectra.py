@@ -119,12 +119,12 @@ def _round(motion: FreeMotion, stretches: list[Stretch], belief: _Belief, near: 
     for stretch in stretches:
         linear = linearized(motion, stretch, belief.axes, bases)
         products = precision * products_of(linear, stretch.waves)
-        covariance, share, narrowed = posterior(products, stretch.sizes)
-        m = len(covariance)
+        variances, share, narrowed = posterior(products, stretch.sizes)
+        m = len(variances)
         mixed = products[m:, m:] - products[m:, :m] @ share
         common += mixed[:7, :7]
         right += mixed[:7, 7]
-        told.append((linear, covariance, share, narrowed))
+        told.append((linear, variances, share, narrowed))
     spread = np.linalg.inv(common)
     moved = spread @ right
     step = float(np.linalg.norm(moved[3:]))
@@ -132,11 +132,11 @@ def _round(motion: FreeMotion, stretches: list[Stretch], belief: _Belief, near: 
     squares = np.empty((len(stretches), *belief.usual.shape))
     cost = misfit = free = 0.0
     n = sum(stretch.angles.size for stretch in stretches)
-    for i, (stretch, ((by_angle, others, out), covariance, share, narrowed)) in enumerate(
+    for i, (stretch, ((by_angle, others, out), variances, share, narrowed)) in enumerate(
         zip(stretches, told, strict=True)
     ):
         w = (share[:, 7] - share[:, :7] @ moved).reshape(3, -1)
-        loose = np.diag(covariance) + np.einsum("ia,ab,ib->i", share[:, :7], spread, share[:, :7])
+        loose = variances + np.einsum("ia,ab,ib->i", share[:, :7], spread, share[:, :7])
         loose = loose.reshape(3, -1)
         untold = float((loose / both_of(stretch.sizes)).sum())  # of the waves
         squares[i] = (w**2 + loose).reshape(3, 2, -1).sum(axis=1)

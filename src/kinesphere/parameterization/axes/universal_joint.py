@@ -7,9 +7,10 @@ from scipy.optimize import least_squares
 
 from kinesphere.data import Array
 from kinesphere.geometry.rotations import mean_rotation, rotation_angle, tangent_basis
-from kinesphere.parameterization.axes.free_motion import FreeMotion, likeliest_axes
+from kinesphere.parameterization.axes.free_motion import FreeMotion
 from kinesphere.parameterization.axes.joint_kernels import constraint_residuals
 from kinesphere.parameterization.axes.phase_log_pca import phase_log_pca
+from kinesphere.parameterization.axes.processes import likeliest_axes, likeliest_with_rests
 from kinesphere.parameterization.axes.spectra import sparsest_axes
 from kinesphere.parameterization.samples import JointSamples
 from kinesphere.parameterization.settings import AxesSettings
@@ -34,7 +35,8 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
     own direction, and much of it spoils the axes. The best few ends are therefore starts of
     `likeliest_axes`, which takes the twist as what it is, unless ``refine`` is off or the
     movement too short. From where that ends `sparsest_axes` takes the angles for rhythms, from
-    there the processes have another try, and what is likeliest counts. One-axis joints are left to
+    there the processes have another try, and so have processes that rest in some movements, as in
+    a calibration (`likeliest_with_rests`). What is likeliest counts. One-axis joints are left to
     the phase method.
 
     Returns
@@ -61,11 +63,13 @@ def universal_joint(samples: JointSamples, n_axes: int, settings: AxesSettings) 
         return np.empty((0, 3))
     if not settings.refine or len(moving) < SHORTEST / 2 * samples.rate:  # halves are shorter
         return axes[0]
-    motion = free_motion_of(samples)
+    motion = free_motion_of(samples).thinned()
     smooth = likeliest_axes(motion, axes)
-    fits = [smooth, sparsest_axes(motion.thinned(), smooth.axes)]
+    fits = [smooth, sparsest_axes(motion, smooth.axes)]
     if fits[1].cost < smooth.cost:  # rhythms, or the first descent was caught in gimbal lock
         fits.append(likeliest_axes(motion, [fits[1].axes]))
+    smooth = min(fits[::2], key=lambda fit: fit.cost)
+    fits.append(likeliest_with_rests(motion, smooth))
     return min(fits, key=lambda fit: fit.cost).axes
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg.lapack import dtrtri
 from scipy.spatial.transform import Rotation
 
 from kinesphere.data import Array
@@ -73,7 +74,7 @@ def products_of(linear: tuple[Array, Array, Array], waves: Array) -> Array:
 
 
 def posterior(products: Array, sizes: Array) -> tuple[Array, Array, float]:
-    """Return the covariance of the waves' coefficients, (m, m), and their shares, (m, 8).
+    """Return the variances of the waves' coefficients, (m,), and their shares, (m, 8).
 
     Third comes minus half the logarithm of the covariance's determinant.
     """
@@ -81,9 +82,11 @@ def posterior(products: Array, sizes: Array) -> tuple[Array, Array, float]:
     scale = np.sqrt(both_of(sizes)).ravel()  # keeps waves that are hardly there from overflowing
     whole = scale[:, None] * products[:m, :m] * scale + np.eye(m)
     factor = cho_factor(whole, lower=True)
-    covariance = scale[:, None] * cho_solve(factor, np.eye(m)) * scale
+    share = scale[:, None] * cho_solve(factor, scale[:, None] * products[:m, m:])
+    inverse, _ = dtrtri(factor[0], lower=1)  # whose columns' squares are the inverse's diagonal
+    variances = scale**2 * (np.tril(inverse) ** 2).sum(axis=0)
     narrowed = float(np.log(np.diag(factor[0])).sum() - np.log(scale).sum())
-    return covariance, covariance @ products[:m, m:], narrowed
+    return variances, share, narrowed
 
 
 def both_of(sizes: Array) -> Array:
