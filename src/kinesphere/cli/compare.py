@@ -20,7 +20,8 @@ def compare(
         typer.Option(
             "--offset",
             metavar="SECONDS",
-            help="How much later B's clock says what A's says; 0 of one recording, else found by itself, if not given.",
+            help="How much later B's clock says what A's says; 0 of one recording, else found by "
+            "itself, if not given.",
         ),
     ] = None,
     joint: Annotated[
