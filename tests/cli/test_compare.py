@@ -51,6 +51,12 @@ def test_an_edit_is_found_where_it_was_made(solved, bent, folder, call):
     before = by_name["left_elbow", "axis1"]["before"]
     assert before["rmsd_deg"] == pytest.approx(30 * np.sqrt(share), rel=1e-6)
     assert before["bias_deg"] == pytest.approx(30 * share, rel=1e-6)
+    after = by_name["left_elbow", "axis1"]["after"]
+    assert after["bias_deg"] == pytest.approx(before["bias_deg"])
+    assert after["rmsd_deg"] == pytest.approx(before["rmsd_deg"])
+    assert found["shared"] == {"clock": True, "world": True, "limb_frames": True}
+    assert "no turn is taken out" in called.out
+    assert "one skeleton" in html
     assert by_name["right_elbow", "axis1"]["after"]["rmsd_deg"] < 1e-6
     assert found["only_in_first"] == {"limbs": [], "joints": []}
 

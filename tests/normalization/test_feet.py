@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from kinesphere.geometry.rotations import rotation_angle
+from kinesphere.normalization import feet as feet_module
 from kinesphere.normalization import normalize
 
 SIDES = ("left", "right")
@@ -69,6 +70,13 @@ def apart(one, other, limb):
     return float(np.rad2deg(rotation_angle(turned)).max())
 
 
+def pitched(one, other, limb):
+    """Return by how much a limb's long axis is higher in the second, deg, median over frames."""
+    i = one.skeleton.limb_names.index(limb)
+    turned = np.swapaxes(one.rotations[:, i], -1, -2) @ other.rotations[:, i]
+    return float(np.rad2deg(np.median(np.arctan2(turned[:, 1, 0], turned[:, 0, 0]))))
+
+
 def step_of(motion):
     return motion.history[-1]
 
@@ -97,7 +105,7 @@ def test_a_foot_that_lacks_markers_is_the_mirror_image_of_the_other(twins, side,
     (said,) = told(less)
     assert said.startswith(f"{foot} has no marker like {', '.join(lacking)} of {other}_foot: ")
     assert f"mirrored onto {', '.join(f'{foot}_{PLACES[k]}' for k in kept)}, " in said
-    assert f"{8 if len(kept) > 1 else 20} deg off" in said
+    assert f"{10 if len(kept) > 1 else 20} deg off" in said
     assert told(whole) == []
 
 
@@ -106,6 +114,73 @@ def test_a_foot_that_stands_otherwise_than_the_other_points_as_its_markers_do(tw
     motion = twins(turned)
     whole, less = normalize(motion), normalize(keeping(motion, left_foot=(0, 1, 4)))
     assert apart(whole, less, "left_foot") < 0.1 * np.rad2deg(0.15)
+
+
+@pytest.mark.parametrize("turned", [-0.06, 0.05])
+def test_a_foot_without_its_heel_rests_nearly_as_the_other_does(twins, turned):
+    """Between how its markers lie and how the other foot rests: 2.4° and 1.6° rms are known."""
+    motion = twins((0.0, 0.0, turned))
+    whole, less = normalize(motion), normalize(keeping(motion, left_foot=(0, 1, 2)))
+    share = apart(whole, less, "left_foot") / np.rad2deg(abs(turned))
+    assert share == pytest.approx(2.4**2 / (2.4**2 + 1.6**2), abs=0.07)
+
+
+def test_feet_that_do_rest_unlike_each_other_are_left_so(twins):
+    """A contracture of 17°: three markers on the foot are no error."""
+    motion = twins((0.0, 0.0, -0.3))
+    less = normalize(keeping(motion, left_foot=(0, 1, 2)))
+    assert apart(normalize(motion), less, "left_foot") < 0.1 * np.rad2deg(0.3)
+
+
+def test_feet_that_do_not_rest_point_as_their_markers_do(twins):
+    """The body spins about its own upward axis, and neither foot ever stands still."""
+    motion = twins((0.0, 0.0, -0.06))
+    angles = np.arange(motion.n_frames) * 0.2
+    spin = Rotation.from_rotvec(angles[:, None] * [0.0, 1.0, 0.0]).as_matrix()
+    motion = replace(
+        motion,
+        rotations=spin[:, None] @ motion.rotations,
+        origins=(spin[:, None] @ motion.origins[..., None])[..., 0],
+    )
+    less = normalize(keeping(motion, left_foot=(0, 1, 2)))
+    assert apart(normalize(motion), less, "left_foot") < 0.1 * np.rad2deg(0.06)
+
+
+def test_rest_makes_up_for_markers_put_on_unlike(twins, rng, monkeypatch):
+    """Against feet whose markers are in place: 5 mm off on both, the left heel lost."""
+    motion, off = twins(), {True: [], False: []}
+    truth = normalize(motion)
+    for _ in range(12):
+        limbs = [
+            replace(one, marker_positions=one.marker_positions + rng.normal(0, 5e-3, (5, 3)))
+            if one.name.endswith("foot")
+            else one
+            for one in motion.skeleton.limbs
+        ]
+        spoilt = replace(motion, skeleton=replace(motion.skeleton, limbs=tuple(limbs)))
+        for weighed, lent in ((True, np.deg2rad(2.4)), (False, 0.0)):
+            monkeypatch.setattr(feet_module, "_LENT", lent)
+            less = normalize(keeping(spoilt, left_foot=(0, 1, 2)))
+            off[weighed].append(pitched(truth, less, "left_foot"))
+    better, without = (np.sqrt(np.mean(np.square(off[key]))) for key in (True, False))
+    assert better < 0.9 * without
+
+
+def test_a_foot_of_which_toes_are_not_seen_is_told(twins):
+    """Heel and outer edge: named so by customary labels alone."""
+    motion = keeping(twins(), left_foot=(2, 3, 4), right_foot=(2, 3, 4))
+    assert told(normalize(motion)) == []
+    limbs = [
+        replace(one, markers=tuple(one.name[0].upper() + tail for tail in ("MT5", "NAV", "HEE")))
+        if one.name.endswith("foot")
+        else one
+        for one in motion.skeleton.limbs
+    ]
+    edge = normalize(replace(motion, skeleton=replace(motion.skeleton, limbs=tuple(limbs))))
+    (said,) = told(edge)
+    assert "outer edge" in said
+    assert "left_foot (LMT5, LNAV, LHEE), right_foot (RMT5, RNAV, RHEE)" in said
+    assert step_of(edge).findings["feet_without_toes"] == ["left_foot", "right_foot"]
 
 
 def test_a_single_marker_draws_the_foot_half_of_the_way(twins):

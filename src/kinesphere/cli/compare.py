@@ -20,7 +20,8 @@ def compare(
         typer.Option(
             "--offset",
             metavar="SECONDS",
-            help="How much later B's clock says what A's says; found by itself, if not given.",
+            help="How much later B's clock says what A's says; 0 of one recording, else found by "
+            "itself, if not given.",
         ),
     ] = None,
     joint: Annotated[
@@ -32,7 +33,9 @@ def compare(
     """Compare two solutions of one motion: by markers and without, by two models, before and after.
 
     What differs by definition is found, told and taken out: the time offset, the world, and the
-    constant turn between the frames of each limb. Differences are B minus A. A parameter table
+    constant turn between the frames of each limb. What both have from one source is not: two
+    solutions of one recording have one clock and one world, an edited motion has its source's limb
+    frames, too, and differs by its edits alone. Differences are B minus A. A parameter table
     (with skeleton.json beside it) or any readable motion may stand for a solved folder; joints are
     known by their names or their limbs', as BVH has them, in the words of other programs, too.
 

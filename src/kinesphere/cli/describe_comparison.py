@@ -16,6 +16,11 @@ def describe_comparison(found: Comparison) -> dict[str, Any]:
     return {
         "offset_s": offset.seconds,
         "offset_given": offset.given,
+        "shared": {
+            "clock": found.kinship.clock,
+            "world": found.kinship.world,
+            "limb_frames": found.kinship.limbs,
+        },
         "offset_correlation": offset.correlation,
         "overlap_s": offset.overlap,
         "n_frames": len(found.times),
@@ -87,22 +92,18 @@ def show_comparison(found: Comparison, title: str) -> None:
     console = stdout()
     offset, world = found.offset, found.world
     print_title(console, title, "differences are the second minus the first")
-    how = "given" if offset.given else f"limb speeds correlate by {offset.correlation:.3f}"
     pairs = [
-        ("time offset", f"{offset.seconds:+.4f} s ({how})"),
+        ("time offset", f"{offset.seconds:+.4f} s ({offset.source})"),
         (
             "in common",
             f"{counted(len(found.times), 'frame')}, {offset.overlap:.2f} s at {found.rate:g} Hz",
         ),
     ]
     if world is not None:
-        pairs.append(
-            (
-                "world",
-                f"turned {np.rad2deg(world.turn):.1f}°, moved {np.linalg.norm(world.shift):.3f} m; "
-                f"joint centres then {world.residual * 1e3:.1f} mm apart (rms)",
-            )
-        )
+        turned = f"turned {np.rad2deg(world.turn):.1f}°, moved {np.linalg.norm(world.shift):.3f} m"
+        how = "that of their one recording" if found.kinship.world else turned
+        apart = f"joint centres are {world.residual * 1e3:.1f} mm apart (rms)"
+        pairs.append(("world", f"{how}; {apart}"))
     for who, limbs, joints in (
         ("only in A", found.limbs_only_first, found.joints_only_first),
         ("only in B", found.limbs_only_second, found.joints_only_second),
@@ -111,7 +112,6 @@ def show_comparison(found: Comparison, title: str) -> None:
             pairs.append((who, ", ".join((*limbs, *joints))))
     print_pairs(console, pairs)
     print_title(console, "Joints", "rms; aligned: without constant turns of the limb frames")
-    turns = {limb.limb: limb.turn for limb in found.limbs}
     print_table(
         console,
         ("joint", "orientation", "aligned", "centres", "of it constant", "remaining"),
@@ -128,8 +128,12 @@ def show_comparison(found: Comparison, title: str) -> None:
         ],
         "lrrrrr",
     )
-    print_title(console, "Limb frames", "constant turn, taken out")
-    print_pairs(console, [("", ", ".join(f"{name} {_deg(turn)}" for name, turn in turns.items()))])
+    if found.kinship.limbs:
+        print_title(console, "Limb frames", "one skeleton, one set of frames: no turn is taken out")
+    else:
+        turns = ", ".join(f"{limb.limb} {_deg(limb.turn)}" for limb in found.limbs)
+        print_title(console, "Limb frames", "constant turn, taken out")
+        print_pairs(console, [("", turns)])
     print_title(console, "Angles", "RMSD before and after alignment, 95 % limits of agreement")
     print_table(
         console,

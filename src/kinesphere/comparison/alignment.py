@@ -88,7 +88,23 @@ def fit_world(first: Array, second: Array) -> WorldAlignment | None:
     return WorldAlignment(rotation, shift, float(np.sqrt(np.mean(off**2))))
 
 
-def fit_limb(limb: str, other: str, first: Array, second: Array) -> LimbAlignment | None:
+def same_world(first: Array, second: Array) -> WorldAlignment:
+    """Return what leaves the second side in its place, and how far apart the centres are there.
+
+    Parameters
+    ----------
+    first, second : (n_frames, n_joints, 3) m
+        Matching joints at matching times; NaN is left out.
+    """
+    off = lengths(first - second)
+    known = off[np.isfinite(off)]
+    residual = float(np.sqrt(np.mean(known**2))) if len(known) else np.nan
+    return WorldAlignment(np.eye(3), np.zeros(3), residual)
+
+
+def fit_limb(
+    limb: str, other: str, first: Array, second: Array, *, same: bool = False
+) -> LimbAlignment | None:
     """Return the constant turn between two frames of one limb, the chordal mean on SO(3).
 
     Hartley, Trumpf, Dai & Li (2013), doi:10.1007/s11263-012-0601-0.
@@ -99,6 +115,8 @@ def fit_limb(limb: str, other: str, first: Array, second: Array) -> LimbAlignmen
         Its names on both sides.
     first, second : (n_frames, 3, 3)
         ``world_from_limb`` in one world; NaN where unseen.
+    same
+        True where both frames are the same by definition, so that any turn is a difference.
 
     Returns
     -------
@@ -109,6 +127,6 @@ def fit_limb(limb: str, other: str, first: Array, second: Array) -> LimbAlignmen
     known = np.isfinite(between).all(axis=(1, 2))
     if not known.any():
         return None
-    mean = mean_rotation(between[known])
+    mean = np.eye(3) if same else mean_rotation(between[known])
     left = rotation_angle(mean.T @ between[known])
     return LimbAlignment(limb, other, mean, float(np.sqrt(np.mean(left**2))))

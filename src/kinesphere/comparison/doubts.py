@@ -47,28 +47,43 @@ def warnings_of(
             f"the verticals of the two worlds differ by {np.rad2deg(world.tilt):.1f}°, which is "
             "taken out: is up the same on both sides?"
         )
-    for side, which in ((a, "first"), (b, "second")):
-        if blind := unknown_twists(side):
-            said.append(
-                f"nothing tells the twist of {', '.join(blind)} on the {which} side: its rotation "
-                "and what hangs from it say little"
-            )
-    for name in names:
+    told = [joint.name for joint in joints]
+    said += _twistless(a, b, told)
+    for name in told:
         mine, theirs = a.skeleton.joint(name), b.skeleton.joint(name)
         if mine.parent != theirs.parent:
             said.append(
                 f"{name} hangs from {mine.parent} here and from {theirs.parent} there: "
                 "their difference is in its angles"
             )
-    if unseen := [name for name in names if name not in {joint.name for joint in joints}]:
+    if unseen := [name for name in names if name not in told]:
         said.append(f"never seen on both sides at once, hence left out: {', '.join(unseen)}")
-    near = [name for name in names if _near_gimbal(a, name)]
+    near = [name for name in told if _near_gimbal(a, name)]
     if near:
         said.append(
             f"near the singular pose of its clinical sequence in more than a tenth of the frames, "
             f"which are left out of its first and third angle: {', '.join(near)}"
         )
     return tuple(said)
+
+
+def _twistless(a: Side, b: Side, joints: list[str]) -> list[str]:
+    """Return which limbs of the joints that are compared have a twist that nothing tells."""
+    blind = []
+    for side in (a, b):
+        both = (side.skeleton.joint(name) for name in joints)
+        of = {limb for joint in both for limb in (joint.parent, joint.child)}
+        blind.append([limb for limb in unknown_twists(side) if limb in of])
+    if blind[0] == blind[1]:
+        sides = [("both sides", blind[0])]
+    else:
+        sides = [("the first side", blind[0]), ("the second side", blind[1])]
+    return [
+        f"nothing tells the twist of {', '.join(limbs)} on {where}: rotations of such a limb and "
+        "of what hangs from it say little"
+        for where, limbs in sides
+        if limbs
+    ]
 
 
 def _moves(angle: Array) -> bool:

@@ -75,7 +75,12 @@ def _renamed(side: Side, limbs: Mapping[str, str], joints: Mapping[str, str]) ->
     if parameters is not None:
         parameters = replace(parameters, skeleton=_called(parameters.skeleton, limbs, joints))
     motion = replace(side.motion, skeleton=_called(side.motion.skeleton, limbs, joints))
-    return Side(motion, _called(side.skeleton, limbs, joints), parameters)
+    return replace(
+        side,
+        motion=motion,
+        skeleton=_called(side.skeleton, limbs, joints),
+        parameters=parameters,
+    )
 
 
 def _called(skeleton: Skeleton, limbs: Mapping[str, str], joints: Mapping[str, str]) -> Skeleton:

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from kinesphere.comparison.alignment import fit_limb, fit_world
+from kinesphere.comparison.offset import TimeOffset
 from kinesphere.comparison.sides import Side, sampled
-from kinesphere.comparison.timing import TimeOffset, overlap_of
+from kinesphere.comparison.timing import find_offset, overlap_of
 from kinesphere.data import Array
-from kinesphere.errors import DegenerateMotion
+from kinesphere.errors import BadSetting, DegenerateMotion
 from kinesphere.geometry.rotations import rotation_log
 from kinesphere.geometry.vectors import lengths
 
@@ -18,6 +19,36 @@ _WHOLE = 0.05  # of a frame: an offset this near to whole frames is one, and not
 _MOST_FRAMES = 3000
 _FAR = np.deg2rad(30.0)  # apart: a leap, not a lag
 _FARTHEST = 1.0  # frame that one round may move
+
+
+def time_offset(
+    first: Side, second: Side, names: list[str], given: float | None, *, shared: bool
+) -> TimeOffset:
+    """Return the offset: as given, else 0 of what shares a clock, else as it is found.
+
+    Parameters
+    ----------
+    names
+        Joints that both have.
+    given
+        s, or None.
+    shared
+        Whether frame k of one is frame k of the other.
+
+    Raises
+    ------
+    BadSetting
+        If the given one is not finite.
+    DegenerateMotion
+        As `find_offset` does.
+    """
+    if given is not None:
+        if not np.isfinite(given):
+            raise BadSetting(f"offset is {given} s; a finite number of seconds was expected")
+        return TimeOffset(float(given), np.nan, overlap_of(first, second, given), given=True)
+    if shared:
+        return TimeOffset(0.0, np.nan, overlap_of(first, second, 0.0), given=False, shared=True)
+    return refined(find_offset(first, second), first, second, names)
 
 
 def refined(offset: TimeOffset, first: Side, second: Side, names: list[str]) -> TimeOffset:

@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 from kinesphere.comparison.alignment import LimbAlignment, WorldAlignment
+from kinesphere.comparison.kinship import Kinship
 from kinesphere.comparison.measures import Agreement
-from kinesphere.comparison.timing import TimeOffset
+from kinesphere.comparison.offset import TimeOffset
 from kinesphere.data import Array
 
 
@@ -53,6 +54,8 @@ class Comparison:
     """(n,) s on the first side's clock, at the slower of the two rates."""
     rate: float
     """Hz."""
+    kinship: Kinship
+    """What both have from one source, and what was therefore neither sought nor taken out."""
     offset: TimeOffset
     world: WorldAlignment | None
     """None where the joint centres do not tell it; worlds are then taken to be the same."""

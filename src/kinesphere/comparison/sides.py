@@ -6,6 +6,7 @@ import numpy as np
 
 from kinesphere.data import (
     Array,
+    History,
     Motion,
     Parameters,
     PoseFlag,
@@ -27,6 +28,7 @@ class Side:
     skeleton: Skeleton
     """The motion's, with movement axes where they are known."""
     parameters: Parameters | None
+    history: History = ()
 
     @property
     def duration(self) -> float:
@@ -43,11 +45,11 @@ def side_from(found: Solution | Motion | Parameters) -> Side:
         If it holds no frame or no limb has a pose, or is none of the three.
     """
     if isinstance(found, Solution):
-        side = Side(found.motion, found.skeleton, found.parameters)
+        side = Side(found.motion, found.skeleton, found.parameters, found.history)
     elif isinstance(found, Parameters):
-        side = Side(motion_from_parameters(found), found.skeleton, found)
+        side = Side(motion_from_parameters(found), found.skeleton, found, found.history)
     elif isinstance(found, Motion):
-        side = Side(found, found.skeleton, None)
+        side = Side(found, found.skeleton, None, found.history)
     else:
         raise BadRecording(
             f"a {type(found).__name__} cannot be compared; a solution, a motion or parameters can"

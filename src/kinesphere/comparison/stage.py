@@ -2,18 +2,18 @@
 
 import numpy as np
 
-from kinesphere.comparison.alignment import LimbAlignment, fit_limb, fit_world
+from kinesphere.comparison.alignment import LimbAlignment, fit_limb, fit_world, same_world
 from kinesphere.comparison.angles import JointPoses, bend, clinical, own_axes, own_before
 from kinesphere.comparison.doubts import warnings_of
+from kinesphere.comparison.kinship import Kinship, find_kinship
 from kinesphere.comparison.matching import called_alike
-from kinesphere.comparison.refinement import common_times, joint_centres, refined
+from kinesphere.comparison.refinement import common_times, joint_centres, time_offset
 from kinesphere.comparison.result import Comparison, JointComparison, ParameterComparison
 from kinesphere.comparison.sides import Side, relative, sampled, side_from
-from kinesphere.comparison.timing import TimeOffset, find_offset, overlap_of
 from kinesphere.data import Array, Motion, Parameters, Solution
 from kinesphere.data.isb import IsbJoint, isb_joint
 from kinesphere.data.isb_conventions import ROOT_CONVENTION, ROOTS
-from kinesphere.errors import BadSetting, DegenerateMotion
+from kinesphere.errors import DegenerateMotion
 from kinesphere.geometry.rotations import rotation_angle
 from kinesphere.geometry.vectors import lengths
 
@@ -28,7 +28,9 @@ def compare(
 
     What differs by definition is found and taken out first: the time offset, the world, and the
     constant turn between the two frames of every limb, for much of the published difference
-    between systems is the definition of frames. Differences before and after are both told.
+    between systems is the definition of frames. Differences before and after are both told. What
+    both have from one source needs no alignment, and nothing is taken out that was changed on
+    purpose: an edited motion and its source have one clock, one world, one set of limb frames.
     Limbs and joints are matched by name, joints also by their child limbs, as BVH calls them, and
     limbs by what other programs' names mean.
 
@@ -37,7 +39,8 @@ def compare(
     first, second
         Solved, by markers or without; their rates may differ.
     offset
-        s: what is at time t of the first is at ``t + offset`` of the second. None to find it.
+        s: what is at time t of the first is at ``t + offset`` of the second. None to find it; it is
+        0 where both have the frames of one recording.
 
     Returns
     -------
@@ -60,14 +63,15 @@ def compare(
             f"{', '.join(a.skeleton.joint_names[:4]) or 'none'} here, "
             f"{', '.join(b.skeleton.joint_names[:4]) or 'none'} there"
         )
-    at = _given(a, b, offset) if offset is not None else refined(find_offset(a, b), a, b, names)
+    kin = find_kinship(a, b)
+    at = time_offset(a, b, names, offset, shared=kin.clock)
     times = common_times(a, b, at.seconds)
     a, b = sampled(a, times), sampled(b, times + at.seconds)
     centres = [joint_centres(side, names) for side in (a, b)]
-    world = fit_world(*centres)
+    world = same_world(*centres) if kin.world else fit_world(*centres)
     turn = np.eye(3) if world is None else world.rotation
     moved = turn @ b.motion.rotations
-    frames = _Frames(a, b, moved)
+    frames = _Frames(a, b, moved, kin)
     parameters: list[ParameterComparison] = list(_root(a, b, moved, frames))
     joints = []
     for j, name in enumerate(names):
@@ -84,6 +88,7 @@ def compare(
     return Comparison(
         times=times,
         rate=a.motion.rate,
+        kinship=kin,
         offset=at,
         world=world,
         limbs=limbs,
@@ -100,15 +105,15 @@ def compare(
 class _Frames:
     """The limb frames of both sides; constant turns between them are found once each."""
 
-    def __init__(self, first: Side, second: Side, moved: Array) -> None:
-        self.first, self.second, self.moved = first, second, moved
+    def __init__(self, first: Side, second: Side, moved: Array, kin: Kinship) -> None:
+        self.first, self.second, self.moved, self.same = first, second, moved, kin.limbs
         self.found: dict[tuple[str, str], LimbAlignment] = {}
 
     def limb(self, name: str, other: str) -> LimbAlignment | None:
         if (name, other) not in self.found:
             mine = self.first.motion.rotations[:, self.first.skeleton.limb_names.index(name)]
             theirs = self.moved[:, self.second.skeleton.limb_names.index(other)]
-            fit = fit_limb(name, other, mine, theirs)
+            fit = fit_limb(name, other, mine, theirs, same=self.same)
             if fit is None:
                 return None
             self.found[name, other] = fit
@@ -125,12 +130,6 @@ class _Frames:
         if not (np.isfinite(first[:, 0, 0]) & np.isfinite(second[:, 0, 0])).any():
             return None
         return JointPoses(first, second, parent.rotation.T @ second @ child.rotation)
-
-
-def _given(a: Side, b: Side, offset: float) -> TimeOffset:
-    if not np.isfinite(offset):
-        raise BadSetting(f"offset is {offset} s; a finite number of seconds was expected")
-    return TimeOffset(float(offset), float("nan"), overlap_of(a, b, offset), given=True)
 
 
 def _root(a: Side, b: Side, moved: Array, frames: _Frames) -> list[ParameterComparison]:

@@ -1,10 +1,9 @@
 """How much later one side has it: by how fast limbs turn, which no choice of frame changes."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.signal import correlate
 
+from kinesphere.comparison.offset import TimeOffset
 from kinesphere.comparison.sides import Side, told_rotations
 from kinesphere.data import Array
 from kinesphere.errors import DegenerateMotion
@@ -25,20 +24,6 @@ RIVAL = 0.98
 """Share of the best correlation from which another peak, more than RIVAL_APART away, is said."""
 RIVAL_APART = 0.3
 """s."""
-
-
-@dataclass(frozen=True)
-class TimeOffset:
-    """What is at time t on one side is at ``t + seconds`` on the other."""
-
-    seconds: float
-    correlation: float
-    """Of the turning speeds of all common limbs at this offset; NaN where it was not sought."""
-    overlap: float
-    """s that both have in common."""
-    given: bool
-    """Whether the user said it."""
-    warnings: tuple[str, ...] = ()
 
 
 def find_offset(first: Side, second: Side) -> TimeOffset:

@@ -1,6 +1,15 @@
-"""Left and right labels, by how they read."""
+"""Left and right labels, and those of a foot's outer edge, by how they read."""
+
+import re
+from collections.abc import Sequence
 
 _SIDES = (("left_", "right_"), ("left", "right"), ("Left", "Right"), ("L", "R"), ("l", "r"))
+_BESIDE = re.compile(
+    r"(?:.*:)?(?:[LR](?:EFT|IGHT)?[_. ]?)?"  # subject and side
+    r"(?P<where>TOE5|MTP?5|FM5|SMALLTOE|VMH|NAV)(?:[_. ][LR])?",
+    re.IGNORECASE,
+)
+_MIDFOOT = ("NAV",)
 
 
 def mirror_pairs(labels: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
@@ -27,3 +36,14 @@ def mirror_pairs(labels: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
                 taken |= {label, partner}
                 break
     return tuple(pairs)
+
+
+def lies_at_the_edge(labels: Sequence[str]) -> bool:
+    """Return whether the markers of a foot's front are customary ones of its outer edge alone.
+
+    Of the fifth ray (``LTOE5``, ``RMT5``, ``FM5``), whatever else is at the middle of the foot
+    (``LNAV``). A label that says neither may be anywhere, and nothing is told then.
+    """
+    found = [_BESIDE.fullmatch(label) for label in labels]
+    places = [match["where"].upper() for match in found if match is not None]
+    return len(places) == len(labels) and any(place not in _MIDFOOT for place in places)

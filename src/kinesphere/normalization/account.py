@@ -11,9 +11,10 @@ from kinesphere.normalization.samples import Samples
 
 _WIDE = np.deg2rad(10.0)  # spread of the body frames from which their mean is in doubt
 
-MIRRORED, BY_ONE = 8, 20
-"""deg by which a foot may be off that is the other's mirror image, and by a single marker of it:
-1.1 to 8.4° and 1.3 to 27° where one marker of a real foot was left out."""
+MIRRORED, BY_ONE, ASIDE = 10, 20, 20
+"""deg by which a foot may be off that is the other's mirror image, by a single marker of it, and
+whose markers are at its outer edge: 0.7 to 9.1° (4 of 80: 10 to 19°), 0.9 to 25° and 6 to 19° where
+markers of a real foot were left out."""
 
 _CROOKED = np.deg2rad(45.0)
 """rad, from where a limb points in the ideal default position, from which on that is said."""
@@ -58,6 +59,7 @@ def _feet(alignment: Alignment) -> list[str]:
     levelled: list[str] = []
     lines: list[str] = []
     heels: list[str] = []
+    aside: list[str] = []
     said: list[str] = []
     for name, foot in alignment.feet.items():
         on = f"{name} ({', '.join(foot.on)})"
@@ -69,12 +71,19 @@ def _feet(alignment: Alignment) -> list[str]:
             )
         elif foot.backward:
             heels.append(on)
+        elif foot.aside:
+            aside.append(on)
         elif foot.bare:
             (lines if foot.pitch is None else levelled).append(on)
     if heels:
         said.append(
             "the long axis of a foot is told by markers at its heel alone; it is level, from them "
             f"past the ankle, and may be 30 deg off: {', '.join(heels)}"
+        )
+    if aside:
+        said.append(
+            "the long axis of a foot runs to markers at its outer edge, none is at the toes; its "
+            f"frame may be {ASIDE} deg off, turned out: {', '.join(aside)}"
         )
     ahead = "the long axis of a foot is told by markers ahead of its ankle alone, none is at the "
     if levelled:
@@ -121,6 +130,7 @@ def findings_of(
         "facing": verdict.as_json(),
         "limbs_without_twist": list(alignment.twistless),
         "feet_without_heel": [name for name, foot in alignment.feet.items() if foot.bare],
+        "feet_without_toes": [name for name, foot in alignment.feet.items() if foot.aside],
         "feet_levelled_deg": {
             name: float(np.rad2deg(foot.pitch))
             for name, foot in alignment.feet.items()

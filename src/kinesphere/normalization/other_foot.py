@@ -1,6 +1,7 @@
 """The line of a foot that lacks markers which the other foot has: as that one's, mirrored."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,10 +17,22 @@ _MISFIT = 0.2
 0.02 to 0.17 of real feet."""
 
 
+@dataclass(frozen=True, eq=False)
+class LentLine:
+    """Where a foot points by the other one."""
+
+    points: Array
+    """(3,) unit vector in the body frame."""
+    missing: tuple[str, ...]
+    """Markers of the other foot that this one has none like."""
+    open_end: bool
+    """Whether one of them is the hindmost or the foremost, between which the line runs."""
+
+
 def lent_line(
     anatomy: Anatomy, limb: int, pose: Array, other: int, other_pose: Array
-) -> tuple[Array, tuple[str, ...]] | None:
-    """Return where a foot points by the other one, (3,) in the body frame, and what it lacks.
+) -> LentLine | None:
+    """Return where a foot points by the other one, and what it lacks.
 
     The other foot, mirrored in the body's median plane, is turned about the ankle onto the markers
     that both have, by labels that differ in their side alone. What these leave open, a turn about
@@ -38,10 +51,7 @@ def lent_line(
 
     Returns
     -------
-    points : (3,)
-    missing
-        Markers of the other foot that this one has none like.
-
+    LentLine or None
         None where they have no markers in common, or not all that this one has, or none is missing;
         and where the markers do not lie as their mirror images do, or are but numbered, which does
         not tell where on a foot one is.
@@ -61,7 +71,12 @@ def lent_line(
     u, _, vt = np.linalg.svd(goal.T @ mirrored + (_ALIKE * length) ** 2 * np.eye(3))
     turn = u @ np.diag([1.0, 1.0, np.linalg.det(u @ vt)]) @ vt
     off = np.sqrt(np.square(goal - mirrored @ turn.T).sum(axis=1).mean())
-    return (turn @ points, missing) if off <= _MISFIT * length else None
+    if off > _MISFIT * length:
+        return None
+    along = other_pose @ anatomy.directions[other]
+    ahead = {label: float(place @ along) for label, place in theirs.items()}
+    ends = {min(ahead, key=ahead.__getitem__), max(ahead, key=ahead.__getitem__)}
+    return LentLine(turn @ points, missing, open_end=not ends.isdisjoint(missing))
 
 
 def _numbered(labels: Iterable[str]) -> bool:

@@ -41,7 +41,7 @@ class Rest:
         return self.n_frames > 0 and self.scatter <= _SCATTER and abs(self.pitch) <= STEEP
 
 
-def find_rest(samples: Samples, limb: int) -> Rest:
+def find_rest(samples: Samples, limb: int, line: Array | None = None) -> Rest:
     """Return how the line of a foot lies where the foot stands still on the floor.
 
     Of the samples of the whole recording those in which both its ends are slow (the slowest tenth)
@@ -52,8 +52,12 @@ def find_rest(samples: Samples, limb: int) -> Rest:
     samples
     limb
         The foot's index.
+    line : (3,), optional
+        Unit vector in the foot's frame that stands for its own line.
     """
-    pitch = np.arcsin(np.clip(samples.directions[:, limb] @ UP, -1.0, 1.0))
+    own = samples.anatomy.directions[limb]
+    along = samples.rotations[:, limb] @ (own if line is None else line)
+    pitch = np.arcsin(np.clip(along @ UP, -1.0, 1.0))
     toes, speed = _toes(samples, limb)
     height = toes @ UP
     usable = np.isfinite(pitch) & np.isfinite(height) & np.isfinite(speed) & _stands(samples, limb)

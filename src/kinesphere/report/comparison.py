@@ -58,6 +58,7 @@ def comparison_html(
         kinds=list(KINDS.items()),
         figures=[_figure(found, p) for p in found.parameters],
         joints=_joint_rows(found),
+        one_skeleton=found.kinship.limbs,
         limbs=[(in_words(limb.limb), _deg(limb.turn), _deg(limb.spread)) for limb in found.limbs],
         only=[
             (who, ", ".join(in_words(n) for n in things))
@@ -87,17 +88,16 @@ def widest_joint(found: Comparison) -> str:
 
 
 def _tiles(found: Comparison) -> list[Tile]:
-    offset, world = found.offset, found.world
+    offset = found.offset
     before = [joint.orientation_before for joint in found.joints]
     after = [joint.orientation_after for joint in found.joints]
     centres = [joint.centre for joint in found.joints]
     left = [joint.centre_after for joint in found.joints]
-    how = "as given" if offset.given else f"limb speeds correlate by {offset.correlation:.3f}"
     return [
         Tile(
             "Time offset",
             f"{offset.seconds * 1e3:+.1f} ms".replace("-", "−"),
-            how if np.isfinite(offset.correlation) or offset.given else "not to be told",
+            offset.source,
         ),
         Tile(
             "In common",
@@ -106,10 +106,7 @@ def _tiles(found: Comparison) -> list[Tile]:
         ),
         Tile(
             "World",
-            "not fitted" if world is None else _deg(world.turn),
-            ""
-            if world is None
-            else f"turned, {np.linalg.norm(world.shift):.2f} m moved; verticals {_deg(world.tilt)}",
+            *_world(found),
         ),
         Tile(
             "Orientation",
@@ -122,6 +119,17 @@ def _tiles(found: Comparison) -> list[Tile]:
             f"rms, median joint; {_mm(float(np.nanmedian(centres)))} with constant shifts",
         ),
     ]
+
+
+def _world(found: Comparison) -> tuple[str, str]:
+    """Return how the worlds lie, and what that is."""
+    world = found.world
+    if found.kinship.world:
+        return "one", "that of their recording; nothing is turned"
+    if world is None:
+        return "not fitted", ""
+    moved = f"{np.linalg.norm(world.shift):.2f} m moved; verticals {_deg(world.tilt)}"
+    return _deg(world.turn), f"turned, {moved}"
 
 
 def _figure(found: Comparison, p: ParameterComparison) -> dict[str, Any]:
