@@ -75,6 +75,13 @@ def test_a_stand_hardly_moves(skin, rng):
     assert movement_axes(still, 1, SETTINGS).doubts == ("the limb hardly moves",)
 
 
+def test_a_limb_that_spins_about_itself_does_not_hardly_move():
+    spin = np.deg2rad(180.0) * np.arange(3000) / 50
+    about_y = Rotation.from_rotvec(spin[:, None] * [0.0, 1.0, 0.0]).as_matrix()
+    spinning = movement_axes(view(about_y), 1, SETTINGS)
+    assert spinning.doubts == ("the limb turns about its own length alone",)
+
+
 def test_a_stand_beside_a_slow_bend_is_no_movement(skin, rng):
     course = np.concatenate([np.zeros(1500), once(90, 60), np.zeros(1500)])
     moving = view(bend(skin, rng, course)).movement.moving

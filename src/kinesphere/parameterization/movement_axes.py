@@ -3,6 +3,7 @@
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.geometry.range_of_motion import range_of_motion
 from kinesphere.parameterization.axes import find_axes
 from kinesphere.parameterization.axes.fit import phase_labels
 from kinesphere.parameterization.free_pair import in_free_motion
@@ -66,6 +67,9 @@ def _why_nothing(view: JointView, settings: ParameterizationSettings) -> str:
     """Return why a joint has no movement to find axes in, as a clause."""
     if not view.calibration.any():
         return "it is never seen"
-    if widest_swing(view.samples.positions) < np.deg2rad(settings.axes.smallest_range):
+    enough = np.deg2rad(settings.axes.smallest_range)
+    if widest_swing(view.samples.positions) < enough:
+        if range_of_motion(view.samples.rotations) >= enough:
+            return "the limb turns about its own length alone"
         return "the limb hardly moves"
     return "the limb moves too slowly to be told from noise"
