@@ -130,13 +130,12 @@ def check_coincident(recording: Recording) -> Iterator[Finding]:
 
 def check_jumps(recording: Recording) -> Iterator[Finding]:
     """Find steps from one sighting to the next that no body makes."""
-    paths, seen = np.moveaxis(recording.markers, 0, 1).copy(), recording.seen
     for c in labelled_columns(recording):
-        at = np.flatnonzero(seen[:, c])
+        at = np.flatnonzero(recording.seen[:, c])
         if len(at) < 2:
             continue
         lasts = np.diff(at) / recording.rate
-        points = paths[c]
+        points = np.ascontiguousarray(recording.markers[:, c])
         steps = lengths(np.diff(points if len(at) == len(points) else points[at], axis=0))
         speeds: Array = np.where(lasts <= LONGEST_STEP, steps / lasts, 0.0)
         fast = np.flatnonzero(speeds > FASTEST)
