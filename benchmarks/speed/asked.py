@@ -1,6 +1,7 @@
 """What is asked for, beside the kernels alone and the stages that hold them."""
 
 import math
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 from benchmarks.axes.bars import Bar
@@ -43,8 +44,15 @@ def _rows(results: dict[str, Any]) -> list[_Row]:
     ours, twin = kernels["two_axes_and_twist_us"], kernels["twin_two_axes_and_twist_us"]
     ratio = "two axes and twist, times as fast as the twin"
     stage_us = 1e6 * seconds["parameterization"] / n_frames
+    given = Bar(
+        "speed",
+        "two axes and twist without calibration, a frame",
+        kernels.get("given_axes_us", float("nan")),  # pages of before have none
+        "µs",
+        10.0,
+    )
     line_bar = Bar("speed", "the whole line in memory", line["line_s"], "s", 1.5)
-    return [
+    rows = [
         row("two axes and twist, a frame", ours, "µs", 10.0, "parameterization"),
         row("normalization, a frame", kernels["propagation_us"], "µs", 2.0, "normalization"),
         row("rigid fits, a frame", kernels["rigid_fits_us"], "µs", 15.0, "skeleton"),
@@ -56,6 +64,10 @@ def _rows(results: dict[str, Any]) -> list[_Row]:
         ),
         (Bar("speed", line_bar.what, float("nan"), "s", 1.5), "all of them", line_bar),
     ]
+    if not math.isnan(given.value):
+        stage_alone = "parameterization without its calibration"
+        rows.insert(1, (replace(given, value=float("nan")), stage_alone, given))
+    return rows
 
 
 def _told(bar: Bar) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.speed.clock import median_seconds
+from benchmarks.speed.given_axes import given_axes
 from benchmarks.speed.twin import solve_frames
 from kinesphere.data import Array, Motion, Parameters, Solution, motion_from_parameters
 from kinesphere.geometry.rigid import fit_rigid
@@ -43,6 +44,7 @@ def paper_comparison(
     moved_s, _ = median_seconds(lambda: propagate(motion, turns, still, along, lengths), repeats)
     rigid_s, _ = median_seconds(_rigid_fits(solution), repeats)
     calibration_s, _ = median_seconds(lambda: _calibrate(performance, motion), 3)
+    given_s, _ = median_seconds(given_axes(motion, performance.calibration), repeats)
     return {
         "n_frames": n_frames,
         "n_joints": len(skeleton.joints),
@@ -52,6 +54,7 @@ def paper_comparison(
         "propagation_us": 1e6 * moved_s / n_frames,
         "rigid_fits_us": 1e6 * rigid_s / n_frames,
         "calibration_s": calibration_s,
+        "given_axes_us": 1e6 * given_s / n_frames,
         "differs_deg": _difference(
             few, parameters, parameters.angles[chosen], parameters.twists[chosen]
         ),

@@ -4,9 +4,14 @@ import ast
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from benchmarks.speed.asked import asked
+from benchmarks.speed.given_axes import given_axes
 from benchmarks.speed.page import page
+
+from kinesphere.parameterization import stage
+from kinesphere.synthetic import make_performance
 
 ROOT = Path(__file__).parents[2]
 MODULES = sorted((ROOT / "benchmarks").rglob("*.py"))
@@ -59,3 +64,31 @@ def test_stages_are_held_against_the_same_numbers():
     assert last["the whole line in memory"] == "1.60 s, **missed**"
     twin = SPEED["paper"]["twin_two_axes_and_twist_us"]
     assert last["two axes and twist, times as fast as the twin"].startswith(f"{twin:.3g}, met")
+
+
+@pytest.mark.parametrize(("value", "verdict"), [(10.0, "met"), (10.1, "**missed**")])
+def test_parameterization_is_told_without_its_calibration_too(value, verdict):
+    """Beside the whole stage, where it was measured; no kernel alone answers to it."""
+    measured = {**SPEED, "paper": {**SPEED["paper"], "given_axes_us": value}}
+    rows = [line for line in asked(measured) if "without its calibration" in line]
+    assert [row.split("|")[3].strip() for row in rows] == ["–"]
+    assert rows[0].split("|")[5].strip().endswith(f", {verdict}")
+    unmeasured = {k: v for k, v in SPEED["paper"].items() if k != "given_axes_us"}
+    assert not any("without its" in line for line in asked({**SPEED, "paper": unmeasured}))
+
+
+def test_axes_that_are_given_are_found_once(monkeypatch):
+    performance = make_performance(np.random.default_rng(3), calibration_s=12, free_s=2)
+    motion, calibration = performance.motion, performance.calibration
+    looked_for = []
+    find = stage.own_or_reused
+
+    def watched(view, *others, **options):
+        looked_for.append(view.name)
+        return find(view, *others, **options)
+
+    monkeypatch.setattr(stage, "own_or_reused", watched)
+    run = given_axes(motion, calibration)
+    run()
+    assert sorted(looked_for) == sorted(motion.skeleton.joint_names)
+    assert stage.own_or_reused is watched

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from kinesphere.geometry.joint_turns import crowds
+from kinesphere.geometry.joint_turns import crowds, joint_turns
 from kinesphere.geometry.pose_worth import COHERENT, crowding, noise_share, overrated
 from kinesphere.geometry.rotations import rotation_exp
 
@@ -16,7 +16,7 @@ def turns(rng, n, widest):
 
 
 def shared_by(rotations):
-    return crowding(rotations, crowds(rotations))
+    return crowding(joint_turns(rotations), crowds(rotations))
 
 
 def test_a_joint_that_turns_far_has_every_frame_count_as_one(rng):

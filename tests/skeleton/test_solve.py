@@ -6,7 +6,7 @@ from numpy.testing import assert_array_equal
 from kinesphere.data import JointModel
 from kinesphere.geometry.rigid import fit_rigid, tells_pose
 from kinesphere.geometry.rotations import rotation_about
-from kinesphere.skeleton import SkeletonSettings, fit_skeleton, poses, sampling, solve
+from kinesphere.skeleton import SkeletonSettings, fit_skeleton, poses, sampling
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.lines import measure_line
 from kinesphere.skeleton.tree import Tree
@@ -30,7 +30,7 @@ def test_what_is_seen_tells_the_pose_where_a_fit_succeeds(rng):
 def test_blocks_leave_no_seams(bodies, rng, monkeypatch):
     recording = spoil_with_gaps(bodies.recording, rng, share=0.3)
     whole = fit_skeleton(recording, bodies.model)
-    for module in (poses, solve, sampling):
+    for module in (poses, sampling):
         monkeypatch.setattr(module, "BLOCK", 97)
     split = fit_skeleton(recording, bodies.model)
     assert_array_equal(split.flags, whole.flags)

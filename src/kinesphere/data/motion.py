@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from kinesphere.data.arrays import Array, Codes, Mask, frozen, frozen_codes
 from kinesphere.data.history import History
 from kinesphere.data.skeleton import Skeleton
+from kinesphere.geometry.poses import relative_rotations
 from kinesphere.kernels.centres import joint_centres_kernel
 
 
@@ -73,9 +74,8 @@ class Motion:
 
     def relative_rotations(self) -> Array:
         """Return ``parent_from_child`` of every joint, (n_frames, n_joints, 3, 3)."""
-        parent = self.rotations[:, self.skeleton.parents[1:]]
-        relative: Array = np.swapaxes(parent, -1, -2) @ self.rotations[:, 1:]
-        return relative
+        parents = self.rotations[:, self.skeleton.parents[1:]]
+        return relative_rotations(parents, self.rotations[:, 1:])
 
     def joint_centres(self, frames: NDArray[np.intp] | None = None) -> Array:
         """Return every joint centre in the world, (n_frames, n_joints, 3) m.

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.geometry.rotations import turned
+from kinesphere.geometry.rotations import turned, turned_from
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def joint_rotations(
     if len(axes) == 3:
         angles = three_told(angles)
     twists = np.nan_to_num(twists, nan=0.0)
-    rotations = turned(np.broadcast_to(rest, (len(twists), 3, 3)), rest @ long_axis, twists)
+    rotations = turned_from(rest, rest @ long_axis, twists)
     for axis, angle in zip(axes, angles.T, strict=False):
         rotations = turned(rotations, axis, angle)
     return rotations

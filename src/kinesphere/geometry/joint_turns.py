@@ -28,7 +28,11 @@ def joint_turns(rotations: Array) -> Array:
 
 def joint_modes(rotations: Array) -> Array:
     """Return the joint's rotation away from its mean, over its rms; (n, 3, 3) → (n, 3)."""
-    turns = joint_turns(rotations)
+    return modes_of(joint_turns(rotations))
+
+
+def modes_of(turns: Array) -> Array:
+    """Return a joint's turns, as `joint_turns` returns them, over their rms; (n, 3) → (n, 3)."""
     modes: Array = turns / max(float(np.sqrt((turns**2).sum(axis=1).mean() / 3)), STILL)
     return modes
 

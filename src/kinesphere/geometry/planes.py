@@ -5,6 +5,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from kinesphere.geometry.vectors import is_seen
+
 Array = NDArray[np.float64]
 
 
@@ -28,14 +30,14 @@ def fit_planes(points: Array) -> tuple[Array, Array, Array]:
 
     Frames with fewer than three points give NaN.
     """
-    seen = np.asarray(np.isfinite(points).all(axis=2))
+    seen = is_seen(points)
     n = seen.sum(axis=1)
     enough = n >= 3
     weights = np.where(seen & enough[:, None], 1.0, 0.0) / np.maximum(n, 1)[:, None]
     filled = np.where(seen[..., None], points, 0.0)
     centres = np.einsum("fp,fpi->fi", weights, filled)
     spread = np.where(seen[..., None], points - centres[:, None], 0.0)
-    covariances = np.einsum("fp,fpi,fpj->fij", weights, spread, spread)
+    covariances = np.swapaxes(weights[..., None] * spread, 1, 2) @ spread
     values, vectors = np.linalg.eigh(covariances)
     values, vectors = values[:, ::-1].clip(min=0.0), vectors[:, :, ::-1]
     unknown = ~enough

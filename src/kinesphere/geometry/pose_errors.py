@@ -70,7 +70,10 @@ def usual_pose_covariance(shape: Array, noise: Array, seen: NDArray[np.bool_]) -
 
 def _of_sets(shape: Array, noise: Array, seen: NDArray[np.bool_]) -> tuple[Array, Array]:
     """Return what poses by each set of points that tells one know, (n, 6, 6), and how often."""
-    sets, times = np.unique(seen, axis=0, return_counts=True)
+    if len(seen) and seen.all():  # as most often: nothing to sort
+        sets, times = seen[:1], np.ones(1, dtype=np.intp)
+    else:
+        sets, times = np.unique(seen, axis=0, return_counts=True)
     enough = (sets & np.isfinite(shape).all(axis=1)).sum(axis=1) >= POSED
     sets, times = sets[enough], times[enough]
     if not len(sets):

@@ -3,8 +3,6 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from kinesphere.geometry.joint_turns import joint_turns
-
 Array = NDArray[np.float64]
 
 LUCK = 3.0
@@ -77,7 +75,7 @@ def overrated(share: float, n_frames: int, n_poses: int, hidden: float) -> float
     return averages + (1 - share) * (1 + COHERENT * n_poses)
 
 
-def crowding(rotations: Array, crowd: Array) -> Array:
+def crowding(turns: Array, crowd: Array) -> Array:
     """Return how many frames share what lasts with each pose, where skin is fitted along, (n,).
 
     Where a joint turns far, skin that goes with it is told apart from its centre, and every frame
@@ -87,11 +85,11 @@ def crowding(rotations: Array, crowd: Array) -> Array:
 
     Parameters
     ----------
-    rotations : (n, 3, 3)
+    turns : (n, 3) rad
+        As `kinesphere.geometry.joint_turns.joint_turns` returns them.
     crowd : (n,)
         As `kinesphere.geometry.joint_turns.crowds` returns it.
     """
-    turns = joint_turns(rotations)
     widest = float(np.linalg.eigvalsh(turns.T @ turns / len(turns))[2])
     little = 1 / (1 + (widest / NARROW**2) ** 2)
     shared: Array = crowd**little

@@ -41,7 +41,12 @@ class RigidFit(NamedTuple):
 
 
 def fit_rigid(
-    shape: Array, points: Array, weights: Array | None = None, *, min_spread: float = MIN_SPREAD
+    shape: Array,
+    points: Array,
+    weights: Array | None = None,
+    *,
+    min_spread: float = MIN_SPREAD,
+    into: tuple[Array, Array] | None = None,
 ) -> RigidFit:
     """Fit ``points ≈ rotation @ shape + shift`` in every frame by weighted least squares [1]_.
 
@@ -55,6 +60,9 @@ def fit_rigid(
         Zero leaves a point out.
     min_spread
         m; a frame whose seen points lie on a line, to this rms extent, has no fit.
+    into : (n_frames, 3, 3), (n_frames, 3) m, optional
+        Rotations and shifts to be written, left as they are where there is no fit; new ones
+        otherwise.
 
     References
     ----------
@@ -63,8 +71,7 @@ def fit_rigid(
     seen = is_seen(points) & is_seen(shape)
     w = np.where(seen, 1.0 if weights is None else weights, 0.0)
     n_frames = len(points)
-    rotations = np.full((n_frames, 3, 3), np.nan)
-    shifts = np.full((n_frames, 3), np.nan)
+    rotations, shifts = into or (np.full((n_frames, 3, 3), np.nan), np.full((n_frames, 3), np.nan))
     status = np.zeros(n_frames, dtype=np.uint8)
     # uncompiled, the kernel takes a hundred times as long as batched singular values
     compiled = not getattr(numba.config, "DISABLE_JIT", False)
@@ -93,14 +100,18 @@ def tells_pose(
     min_spread
         m, as `fit_rigid` takes it.
     """
-    whole = bool(seen.all())
-    packed = np.packbits(seen[:1] if whole else seen, axis=1)
+    placed = np.isfinite(shape).all(axis=1)
+
+    def tell(some: NDArray[np.bool_]) -> bool:
+        points = shape[some & placed]
+        return len(points) > 2 and line_spread(points) > min_spread
+
+    if len(seen) and seen.all():  # as most often: nothing to sort
+        return np.full(len(seen), tell(seen[0]))
+    packed = np.packbits(seen, axis=1)
     _, first, which = np.unique(packed, axis=0, return_index=True, return_inverse=True)
-    enough = np.zeros(len(first), dtype=np.bool_)
-    for i, frame in enumerate(first):
-        points = shape[seen[frame] & np.isfinite(shape).all(axis=1)]
-        enough[i] = len(points) > 2 and line_spread(points) > min_spread
-    return np.full(len(seen), enough[0]) if whole and len(seen) else enough[which.ravel()]
+    enough = np.array([tell(seen[frame]) for frame in first], dtype=np.bool_)
+    return np.asarray(enough[which.ravel()])
 
 
 def left_by_fit(seen: NDArray[np.bool_]) -> float:

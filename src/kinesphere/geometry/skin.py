@@ -17,8 +17,8 @@ from kinesphere.geometry.centre_views import View
 from kinesphere.geometry.joint_turns import (
     crowds,
     has_one_axis,
-    joint_modes,
     joint_turns,
+    modes_of,
     nearest_poses,
 )
 from kinesphere.geometry.pose_worth import crowding, noise_share, pose_worth
@@ -114,10 +114,10 @@ def fit_through_skin(
     assert turning.skin is not None
     assert turning.skin_seeing is not None
     rotations = turning.rotations[turning.known]
-    modes, near = joint_modes(rotations), nearest_poses(turning.back)
-    hinge = has_one_axis(joint_turns(rotations), feigned(view, hidden))
+    turns, near = joint_turns(rotations), nearest_poses(turning.back)
+    hinge, modes = has_one_axis(turns, feigned(view, hidden)), modes_of(turns)
     alike = crowds(rotations)
-    crowd = alike if hinge else crowding(rotations, alike)
+    crowd = alike if hinge else crowding(turns, alike)
     whole = Skin(modes, RIGID * root_of(turning.skin_seeing), RIGID * root_of(turning.skin))
     skin = whole._replace(modes=modes[:, :0]) if hinge else whole
     x, inner = start, turning.place(start).mean(axis=0)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from kinesphere.geometry.centre_views import Turning, View
 from kinesphere.geometry.pose_errors import point_covariance
 from kinesphere.geometry.rotations import hat
+from kinesphere.kernels.skin_columns import skin_columns_kernel
 
 Array = NDArray[np.float64]
 
@@ -43,11 +44,7 @@ def equations(
     if k:
         seeing = np.concatenate([-hat(x), np.eye(3)], axis=1) @ skin.seeing
         own = np.concatenate([-hat(inner), np.eye(3)], axis=1) @ skin.turning
-        middle = 6 + 6 * k
-        moved = (back @ seeing)[:, :, None] * skin.modes[:, None, :, None]
-        columns[:, :, 6:middle] = moved.reshape(n, 3, -1)
-        moved = -(w @ own)[None, :, None] * skin.modes[:, None, :, None]
-        columns[:, :, middle:] = moved.reshape(n, 3, -1)
+        skin_columns_kernel(back @ seeing, -(w @ own), skin.modes, columns[:, :, 6:])
     return (turning.place(x) - inner) @ w.T, columns, w
 
 

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.medians import column_medians
 from kinesphere.geometry.vectors import lengths
+from kinesphere.kernels.distances import pair_distances_kernel
 from kinesphere.kernels.stray_steps import find_steps_kernel
 from kinesphere.kernels.strays import judge_runs_kernel
 
@@ -98,12 +99,11 @@ def find_strays_of_body(body: Array, rate: float, least: float) -> Mask:
         return strays
     pairs = _pairs(body)
     apart = np.zeros((len(body), len(pairs), 3))
-    for i, (a, b) in enumerate(pairs):
-        apart[:, i, 0] = lengths(body[:, a] - body[:, b])
+    pair_distances_kernel(np.ascontiguousarray(body), pairs, apart[..., 0])
     off = find_strays(apart, rate, least, STRETCHED)
-    frames = np.flatnonzero(off.any(axis=1))
-    if len(frames) == 0:
+    if not off.any():
         return strays
+    frames = np.flatnonzero(off.any(axis=1))
     ends = np.zeros((len(pairs), n))
     ends[np.arange(len(pairs)), pairs[:, 0]] = ends[np.arange(len(pairs)), pairs[:, 1]] = 1.0
     seen = np.isfinite(apart[frames, :, 0]) @ ends

@@ -81,10 +81,7 @@ def rotation_vectors_kernel(quaternions: NDArray[np.float64], vectors: NDArray[n
 
 @kernel
 def turn_kernel(
-    axis: NDArray[np.float64],
-    sines: NDArray[np.float64],
-    cosines: NDArray[np.float64],
-    rotations: NDArray[np.float64],
+    axis: NDArray[np.float64], angles: NDArray[np.float64], rotations: NDArray[np.float64]
 ) -> None:
     """Turn every rotation about one axis, in place: Rodrigues' formula on each column.
 
@@ -92,19 +89,18 @@ def turn_kernel(
     ----------
     axis : (3,)
         Unit vector.
-    sines, cosines : (n,)
-        Of the angles.
+    angles : (n,) rad
     rotations : (n, 3, 3)
     """
     x, y, z = axis[0], axis[1], axis[2]
-    for k in range(3):  # over frames: in plain Python hardly slower than compiled
-        p, q, r = rotations[:, 0, k], rotations[:, 1, k], rotations[:, 2, k]
-        along = (1.0 - cosines) * (x * p + y * q + z * r)
-        first = cosines * p + sines * (y * r - z * q) + along * x
-        second = cosines * q + sines * (z * p - x * r) + along * y
-        rotations[:, 2, k] = cosines * r + sines * (x * q - y * p) + along * z
-        rotations[:, 0, k] = first
-        rotations[:, 1, k] = second
+    for f in range(len(rotations)):
+        s, c = np.sin(angles[f]), np.cos(angles[f])
+        for k in range(3):
+            p, q, r = rotations[f, 0, k], rotations[f, 1, k], rotations[f, 2, k]
+            along = (1.0 - c) * (x * p + y * q + z * r)
+            rotations[f, 0, k] = c * p + s * (y * r - z * q) + along * x
+            rotations[f, 1, k] = c * q + s * (z * p - x * r) + along * y
+            rotations[f, 2, k] = c * r + s * (x * q - y * p) + along * z
 
 
 @kernel

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from kinesphere.data import Array
+from kinesphere.geometry.poses import relative_rotations
 from kinesphere.geometry.rotations import nearest_rotation, rotation_exp, rotation_log
 from kinesphere.geometry.vectors import lengths
 
@@ -52,7 +53,7 @@ def robust_mean_rotations(rotations: Array) -> Array:
 def _settle(mean: Array, rotations: Array, weigh: Callable[[Array], Array]) -> tuple[Array, Array]:
     """Return the mean that its own weights keep, (n_columns, 3, 3), and all distances from it."""
     for _ in range(_ROUNDS):
-        away = rotation_log(np.swapaxes(mean, -1, -2) @ rotations)
+        away = rotation_log(relative_rotations(mean, rotations))
         apart = lengths(away)
         weights = weigh(apart)
         step = (weights[..., None] * away).sum(axis=0) / weights.sum(axis=0)[:, None]

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Mask, PoseFlag
+from kinesphere.geometry.poses import place
 from kinesphere.geometry.vectors import lengths
 from kinesphere.normalization.samples import UP, Samples
 
@@ -176,4 +177,4 @@ def _level(samples: Samples, limb: int) -> float:
 def _carried(samples: Samples, limb: int, point: Array, frames: NDArray[np.intp]) -> Array:
     """Return a point of a limb in the world, (n, 3) m."""
     motion = samples.motion
-    return np.asarray(motion.rotations[frames, limb] @ point + motion.origins[frames, limb])
+    return place(motion.rotations[frames, limb], motion.origins[frames, limb], point)

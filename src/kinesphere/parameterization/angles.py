@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinesphere.data import Array, Mask
-from kinesphere.geometry.rotations import carried, turned
+from kinesphere.geometry.rotations import carried, turned, turned_from
 from kinesphere.parameterization.branches import (
     CALM,
     branches_of_movement,
@@ -88,7 +88,7 @@ def one_axis_angles(rotations: Array, axis: Array, rest: Array, long_axis: Array
     p = carried(rotations, long_axis)
     r = rest @ long_axis
     theta = np.arctan2(np.cross(r, p) @ axis, p @ r - (r @ axis) * (p @ axis))
-    model = turned(np.broadcast_to(rest, rotations.shape), axis, theta)
+    model = turned_from(rest, axis, theta)
     angles = np.full((len(rotations), 3), np.nan)
     angles[:, 0] = theta
     off = np.abs(_colatitude(axis, p) - _colatitude(axis, r))

@@ -57,7 +57,8 @@ def branches_of_movement(solutions: Array, calm: Array, twist_known: Mask, rate:
 def _path(solutions: Array, twist_known: Mask, own: Array, rate: float) -> Branches:
     """Return the smoothest path, of similar ones that of smaller angles."""
     rate = rate or USUAL
-    own = own + SIZE / rate * (solutions**2).sum(axis=2)
+    squares = np.einsum("nbi,nbi->nb", solutions, solutions)
+    own = own + SIZE / rate * squares
     own = np.where(twist_known[:, None], own, BESIDE_REST)
     nearby = max(1, round(UNSEEN * rate))
     return smoothest_branches(solutions, twist_known, own, PATIENCE * rate, nearby)

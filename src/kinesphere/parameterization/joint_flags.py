@@ -3,7 +3,7 @@
 import numpy as np
 
 from kinesphere.data import Codes, JointFlag, Mask, Motion, PoseFlag
-from kinesphere.geometry.rotations import carried
+from kinesphere.geometry.poses import place
 from kinesphere.geometry.vectors import lengths
 from kinesphere.parameterization.angles import JointAngles
 from kinesphere.parameterization.joint_fit import JointFit
@@ -78,10 +78,10 @@ def leaps(solved: JointAngles) -> Mask:
 def _torn(motion: Motion, j: int) -> Mask:
     """Return where parent and child disagree about the joint far more than usual, (n_frames,)."""
     joint, parent = motion.skeleton.joints[j], motion.skeleton.parents[j + 1]
-    by_parent = (
-        carried(motion.rotations[:, parent], joint.centre_in_parent) + motion.origins[:, parent]
+    by_parent, by_child = (
+        place(motion.rotations[:, limb], motion.origins[:, limb], centre)
+        for limb, centre in ((parent, joint.centre_in_parent), (j + 1, joint.centre_in_child))
     )
-    by_child = carried(motion.rotations[:, j + 1], joint.centre_in_child) + motion.origins[:, j + 1]
     apart = lengths(by_parent - by_child)
     known: Mask = np.isfinite(apart)
     if not known.any():

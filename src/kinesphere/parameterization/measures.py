@@ -53,6 +53,5 @@ def paper_measures(
 
 def number(values: Array, of: Callable[[Array], float]) -> float | None:
     """Return a statistic as JSON has it: None where nothing is known."""
-    if not np.isfinite(values).any():
-        return None
-    return float(of(values[np.isfinite(values)]))
+    known = values[np.isfinite(values)]
+    return float(of(known)) if len(known) else None

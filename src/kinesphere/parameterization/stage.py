@@ -15,6 +15,7 @@ from kinesphere.data import (
     given_away,
 )
 from kinesphere.geometry.chain import joint_rotations
+from kinesphere.geometry.poses import relative_rotations
 from kinesphere.parameterization.anatomy import human_plan
 from kinesphere.parameterization.angles import unwrapped
 from kinesphere.parameterization.calibration_windows import windows_beyond, windows_of
@@ -99,7 +100,7 @@ def parameterize(
     neighbours = neighbours_of(motion)
     for j, joint in enumerate(skeleton.joints):
         limb, parent = skeleton.limbs[j + 1], skeleton.parents[j + 1]
-        rotations = np.swapaxes(world[:, parent], -1, -2) @ world[:, j + 1]
+        rotations = relative_rotations(world[:, parent], world[:, j + 1])
         twist_known = known[:, j + 1]
         view = view_joint(
             joint.name,

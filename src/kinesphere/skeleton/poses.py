@@ -6,7 +6,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from kinesphere.data import Array, Codes, Mask, PoseFlag
-from kinesphere.geometry.rigid import fit_rigid, out_of_frame, tells_pose
+from kinesphere.geometry.poses import place
+from kinesphere.geometry.rigid import fit_rigid, tells_pose
 from kinesphere.geometry.rotations import rotation_between
 from kinesphere.geometry.vectors import is_seen
 from kinesphere.skeleton.body import NOISE, Body
@@ -31,7 +32,7 @@ class Poses(NamedTuple):
 
     def carry(self, point: Array) -> Array:
         """Return a point of the limb in the world, (3,) m → (n_frames, 3) m."""
-        return out_of_frame(self.rotations, self.shifts, point[None])[:, 0]
+        return place(self.rotations, self.shifts, point)
 
 
 class Neighbour(NamedTuple):
@@ -89,9 +90,10 @@ def fit_poses(
         at = block if open_.all() else start + np.flatnonzero(open_)
         markers = own[at]
         world = np.concatenate([markers, *(p.world[at, None] for p in joints)], axis=1)
-        fit = fit_rigid(local, world, weights, min_spread=min_spread)
-        poses.rotations[at] = fit.rotations
-        poses.shifts[at] = fit.shifts
+        into = poses.rotations[at], poses.shifts[at]
+        fit = fit_rigid(local, world, weights, min_spread=min_spread, into=into)
+        if not isinstance(at, slice):  # a block as a whole is written where it is
+            poses.rotations[at], poses.shifts[at] = fit.rotations, fit.shifts
         alone = tells_pose(body.shape, is_seen(markers), min_spread=min_spread)
         flags = np.where(alone, PoseFlag.MEASURED, PoseFlag.JOINT_AIDED)
         poses.flags[at] = np.where(fit.fitted, flags, PoseFlag.UNSEEN)

@@ -1,7 +1,6 @@
 """Which frames to measure on: as many poses, and as different ones, as the time allows."""
 
 from collections.abc import Sequence
-from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 from kinesphere.data import Array
 from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.vectors import is_seen
+from kinesphere.kernels.distances import distance_ways_kernel
 
 JUMP = 0.05
 """m, most a marker's step between frames counts: a ghost's jump is no motion."""
@@ -83,14 +83,10 @@ def spread_over_joints(
     looked_at = even_frames(n_frames, DENSE * count)
     few = markers if len(looked_at) == n_frames else markers[looked_at]
     steps = np.zeros(len(few))
-    used = sorted({column for joint in joints for limb in joint for column in limb})
-    apart = {column: np.ascontiguousarray(few[:, column]) for column in used}
-    for one, other in joints:
+    for limbs in joints:
         ways = np.zeros(len(few))
-        for a, b in product(one, other):
-            off = apart[a] - apart[b]
-            step = np.abs(np.diff(np.sqrt(np.einsum("ni,ni->n", off, off))))
-            ways[1:] += np.minimum(np.where(np.isfinite(step), step, 0.0), JUMP)
+        one, other = (np.array(columns, dtype=np.intp) for columns in limbs)
+        distance_ways_kernel(few, one, other, JUMP, ways)
         steps += ways / max(float(ways.sum()), TINY)
     half = count // 2
     spread = looked_at[_spread_over(steps, count - half)]

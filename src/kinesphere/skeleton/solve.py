@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.data import Array, Codes, PoseFlag
-from kinesphere.geometry.rigid import out_of_frame
+from kinesphere.geometry.poses import misfits
 from kinesphere.skeleton.body import Body
 from kinesphere.skeleton.body_axes import unit
 from kinesphere.skeleton.linked import find_groups
 from kinesphere.skeleton.linked_poses import pose_linked
 from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.neighbours import cloud, next_normals
-from kinesphere.skeleton.poses import BLOCK, Neighbour, Poses, aim, bridge, fit_poses
+from kinesphere.skeleton.poses import Neighbour, Poses, aim, bridge, fit_poses
 from kinesphere.skeleton.settings import SkeletonSettings
 from kinesphere.skeleton.spanned import span
 from kinesphere.skeleton.tree import Tree
@@ -76,7 +76,7 @@ def solve_poses(
         own = cloud(tree.markers[limb], markers)
         parent = None if body.parent is None else arrays.of(tree.limbs.index(body.parent))
         _solve_limb(body, own, parent, measured, poses, rate, settings)
-        arrays.residuals[:, i] = residuals(body, own, poses)
+        arrays.residuals[:, i] = misfits(poses.rotations, poses.shifts, body.shape, own)
     return arrays
 
 
@@ -138,19 +138,6 @@ def _helpers(
         world[open_] = alone.carry(_centre(bodies[child]))
         helpers.append(Neighbour(joints[child].fit.centre, world, bodies[child].centre_noise))
     return tuple(helpers)
-
-
-def residuals(body: Body, own: Array, poses: Poses) -> Array:
-    """Return the rms distance of a limb's markers from where its pose puts them, (n_frames,) m."""
-    rms, markers = np.full(len(own), np.nan), np.ones(own.shape[1])
-    for start in range(0, len(own), BLOCK):
-        at = slice(start, start + BLOCK)
-        off = own[at] - out_of_frame(poses.rotations[at], poses.shifts[at], body.shape)
-        square = np.einsum("nmi,nmi->nm", off, off)
-        known = np.isfinite(square)
-        count, total = known @ markers, np.where(known, square, 0.0) @ markers
-        rms[at] = np.where(count > 0, np.sqrt(total / np.maximum(count, 1)), np.nan)
-    return rms
 
 
 def _centre(body: Body) -> Array:

@@ -64,8 +64,9 @@ def without_strays(
         markers = recording.markers
     for labels in bodies:
         columns = list(recording.columns(tuple(labels)))
-        body = markers[:, columns]
-        strays[:, columns] |= find_strays_of_body(body, rate, OF_BODY * NEAR * size)
+        off = find_strays_of_body(np.take(markers, columns, axis=1), rate, OF_BODY * NEAR * size)
+        if off.any():
+            strays[:, columns] |= off
     if not strays.any():
         return recording, Strays({}, ())
     markers = np.where(strays[..., None], np.nan, recording.markers)
