@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinesphere.geometry.vectors import is_seen
+from kinesphere.kernels.principal_axes import principal_axes_kernel
 
 Array = NDArray[np.float64]
 
@@ -38,8 +39,8 @@ def fit_planes(points: Array) -> tuple[Array, Array, Array]:
     centres = np.einsum("fp,fpi->fi", weights, filled)
     spread = np.where(seen[..., None], points - centres[:, None], 0.0)
     covariances = np.swapaxes(weights[..., None] * spread, 1, 2) @ spread
-    values, vectors = np.linalg.eigh(covariances)
-    values, vectors = values[:, ::-1].clip(min=0.0), vectors[:, :, ::-1]
+    vectors, values = np.empty_like(covariances), np.empty_like(centres)
+    principal_axes_kernel(covariances, vectors, values)
     unknown = ~enough
     centres[unknown], values[unknown], vectors[unknown] = np.nan, np.nan, np.nan
     return centres, vectors, values
