@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from benchmarks.speed.asked import asked
+from benchmarks.speed.asked import HELD_BYTES, asked
 from benchmarks.speed.paper import PAPER_US
 
 _TITLES = {"bodies": "12 marker bodies", "cmu41": "CMU layout, built-in model"}
@@ -89,13 +89,16 @@ def _line(results: dict[str, Any]) -> list[str]:
 def _growth(results: dict[str, Any]) -> list[str]:
     rows = results["growth"]
     stages = list(rows[0]["seconds"])
+    recording, solution = HELD_BYTES
     lines = [
         "## Growth with the recording",
         "",
         "12 marker bodies at 50 Hz, the first 20 s calibration. Microseconds a frame that stay",
         "the same, or fall, mean that time grows no faster than the recording. Memory is the peak",
-        "of what is allocated besides the recording and the solution, which hold 1,200 and",
-        "1,900 bytes a frame; most of it is the poses before normalization, beside those after it.",
+        "of what is allocated besides the recording and the solution, which hold "
+        f"{recording:,} and",
+        f"{solution:,} bytes a frame; most of it is the poses before normalization, beside those "
+        "after it.",
         "",
         f"| frames | whole line, s | µs a frame | {' | '.join(stages)} | memory besides, MB |",
         "|---:|---:|---:|" + "---:|" * (len(stages) + 1),

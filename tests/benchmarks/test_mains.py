@@ -66,6 +66,16 @@ def test_stages_are_held_against_the_same_numbers():
     assert last["two axes and twist, times as fast as the twin"].startswith(f"{twin:.3g}, met")
 
 
+def test_growth_is_told_by_the_longest_recording_and_a_tenth_of_it():
+    rows = [
+        {"n_frames": n, "line_s": 30e-6 * n + 1e-12 * n**2, "extra_bytes": 310 * n, "seconds": {}}
+        for n in (1_000, 100_000, 1_000_000)
+    ]
+    told = " ".join(asked({**SPEED, "growth": rows}))
+    assert "31.0 µs a frame at 1,000,000 frames, 30.1 at 100,000" in told
+    assert "310 bytes a frame there and 310 here, 10% of what these hold" in told
+
+
 @pytest.mark.parametrize(("value", "verdict"), [(10.0, "met"), (10.1, "**missed**")])
 def test_parameterization_is_told_without_its_calibration_too(value, verdict):
     """Beside the whole stage, where it was measured; no kernel alone answers to it."""
