@@ -245,7 +245,9 @@ def test_somebody_who_sits_all_the_time(actor):
     solution = solve(recorded(actor, angles=angles))
     assert "as when seated" in warning(solution, "no frame shows a good default position")
     doubted = warning(solution, "the body frame's serve instead")
-    assert all(f"{s}_{j} (the limb hardly" in doubted for s in ("left", "right") for j in ("hip",))
+    # one thigh twists by a little more than an axis needs
+    assert "left_hip (the limb turns about its own length alone)" in doubted
+    assert "right_hip (the limb hardly moves)" in doubted
 
 
 # --- markers ---

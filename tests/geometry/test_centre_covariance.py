@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
 
 from kinesphere.geometry.centre_covariance import (
     Told,
@@ -31,6 +32,17 @@ def test_it_survives_motion_that_knows_one_direction_only():
     found = covariance_of(Told(known, known), prior, 1.0, SPREAD)
     assert abs(axis @ found @ axis) < 1e-14
     assert np.linalg.eigvalsh(found)[0] > -1e-14
+
+
+def test_what_scatters_where_nothing_pulls_is_rounding():
+    """A hinge without noise: scores of 1e9 leave squares of 100 across all of them, of any sign."""
+    turn = Rotation.from_rotvec([0.4, -0.9, 0.2]).as_matrix()
+    pull = turn @ np.diag([1e18, 1e16, 0.0]) @ turn.T
+    for left in (-100.0, 100.0):
+        told = Told(pull, pull + left * np.outer(turn[:, 2], turn[:, 2]))
+        variances = np.linalg.eigvalsh(data_covariance_of(told, 0.025))
+        assert variances[-1] == pytest.approx(25.0**2)
+        assert (np.abs(variances[:2]) < 1e-12).all()
 
 
 def test_where_motion_is_silent_it_says_a_thousand_spreads():

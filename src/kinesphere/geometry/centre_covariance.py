@@ -15,6 +15,8 @@ from kinesphere.geometry.pose_worth import COHERENT
 
 Array = NDArray[np.float64]
 
+ROUNDING = 1e-13
+"""Share of the largest eigenvalue below which one is nothing but rounding."""
 SILENT = 1e-6
 """Share of the expectation's information left where motion is silent: a thousand spreads."""
 
@@ -40,7 +42,7 @@ def covariance_of(told: Told, prior: Array, off: float, spread: float) -> Array:
     spread
         m.
     """
-    return _sandwich(told, prior, told.scatter + prior @ prior * (off * spread) ** 2)
+    return _sandwich(told, prior, prior @ prior * (off * spread) ** 2)
 
 
 def data_covariance_of(told: Told, spread: float) -> Array:
@@ -49,7 +51,7 @@ def data_covariance_of(told: Told, spread: float) -> Array:
     A thousand spreads where it is silent.
     """
     faint = SILENT * np.eye(3) / spread**2
-    return _sandwich(told, faint, told.scatter + faint)
+    return _sandwich(told, faint, faint)
 
 
 def scatter_of(scores: Array, share: float, crowd: Array) -> Array:
@@ -73,14 +75,17 @@ def scatter_of(scores: Array, share: float, crowd: Array) -> Array:
 
 
 def _sandwich(told: Told, prior: Array, force: Array) -> Array:
-    """Return H⁻¹ F H⁻¹ with H = prior + pull, (3, 3), however far those differ.
+    """Return H⁻¹ F H⁻¹ with H = prior + pull and F = force + scatter, (3, 3).
 
     Motion without noise may know one direction 10¹⁶ times better than another: their sum is
     singular in rounding, so the prior is made the unit and eigenvalues are inverted one by one.
+    What scatters where nothing pulls is rounding, and may be negative.
     """
     values, vectors = np.linalg.eigh(prior)
     root = (vectors / np.sqrt(values)) @ vectors.T
     known, axes = np.linalg.eigh(root @ told.pull @ root)
     back = root @ axes / (np.maximum(known, 0.0) + 1)
-    covariance: Array = back @ (axes.T @ root @ force @ root @ axes) @ back.T
+    pulled = known > ROUNDING * known[-1]
+    scatter = np.outer(pulled, pulled) * (axes.T @ root @ told.scatter @ root @ axes)
+    covariance: Array = back @ (axes.T @ root @ force @ root @ axes + scatter) @ back.T
     return (covariance + covariance.T) / 2

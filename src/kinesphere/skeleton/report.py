@@ -3,6 +3,7 @@
 import numpy as np
 
 from kinesphere.data import Array, Joint, Limb, Observability, PoseFlag
+from kinesphere.geometry.centre_covariance import ROUNDING
 from kinesphere.geometry.even_frames import even_frames
 from kinesphere.geometry.in_words import in_millimetres
 from kinesphere.geometry.range_of_motion import RANGE_SAMPLE, range_of_motion
@@ -13,8 +14,6 @@ from kinesphere.skeleton.measured import MeasuredJoint
 from kinesphere.skeleton.poses import Poses
 from kinesphere.skeleton.settings import SkeletonSettings
 
-ROUNDING = 1e-13
-"""Share of the largest variance below which one is nothing but rounding."""
 VERDICT_NOISE = 5e-4
 """m, least noise the verdict on a centre reckons with: no recording is better than that."""
 
@@ -71,14 +70,15 @@ def verdict_on(
     """
     fit = measured.fit
     inflate = max(1.0, (VERDICT_NOISE / max(fit.noise, 1e-9)) ** 2)
-    variances = np.linalg.eigvalsh(fit.data_covariance)
-    known = variances < ROUNDING * variances[-1]  # beside what is open, nothing but rounding
-    by_motion = inflate * np.where(known, 0.0, variances)
+    variances, directions = np.linalg.eigh(fit.data_covariance)
+    # beside what is open, nothing but rounding
+    variances = np.where(variances < ROUNDING * variances[-1], 0.0, variances)
+    by_motion = inflate * variances
     # a centre held where it is expected is off by what that is off, whatever the motion would tell
     deviations = np.sqrt(np.maximum(by_motion, np.linalg.eigvalsh(fit.covariance)))
     # open: worse known than is useful, or known better from the expectation than from the motion
-    told = np.linalg.eigvals(fit.data_covariance @ fit.prior).real
-    weak = max(int((deviations > settings.undetermined_mm * 1e-3).sum()), int((told > 1).sum()))
+    astray = _times_the_expectation(np.sqrt(variances) * directions, fit.prior)
+    weak = max(int((deviations > settings.undetermined_mm * 1e-3).sum()), int((astray > 1).sum()))
     degrees = np.rad2deg(moved)
     placed = f"placed by expectation ({measured.source})"
     if moved < np.deg2rad(settings.min_range_deg) or weak > 1:
@@ -88,13 +88,33 @@ def verdict_on(
     if weak == 1:
         return "hinge", (
             f"range of motion {degrees:.0f}°, centre open along one axis "
-            f"(± {in_millimetres(min(deviations[-1], 9.999))}), there {placed}"
+            f"(± {in_millimetres(np.sqrt(np.linalg.eigvalsh(fit.covariance)[-1]))}), there {placed}"
         )
     note = f"range of motion {degrees:.0f}°"
     if measured.drawn >= SAID:
         drawn = f"drawn {in_millimetres(measured.drawn)} towards where it is expected"
         note = f"{note}, {drawn} ({measured.source})"
     return "determined", note
+
+
+def _times_the_expectation(roots: Array, prior: Array) -> Array:
+    """Return how many standard deviations of an expectation others are, (3,).
+
+    By singular values of roots, of which rounding leaves far more than of eigenvalues of their
+    squares: an open direction is 10⁹ times another one where there is no noise.
+
+    Parameters
+    ----------
+    roots : (3, 3) m
+        Deviations along their directions, in the columns.
+    prior : (3, 3) 1/m²
+        Precision of the expectation.
+    """
+    precisions, directions = np.linalg.eigh(prior)
+    times: Array = np.linalg.svd(
+        (np.sqrt(np.maximum(precisions, 0.0)) * directions).T @ roots, compute_uv=False
+    )
+    return times
 
 
 def describe_limb(body: Body, joints: dict[str, MeasuredJoint]) -> Limb:
